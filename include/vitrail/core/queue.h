@@ -1,0 +1,57 @@
+// vitrail/core/queue.h: an in-order command queue with its kernels and its workspace. Calls enqueue here and return.
+#pragma once
+#include <functional>
+#include <memory>
+
+#include <vitrail/core/buffer.h>
+#include <vitrail/core/device.h>
+#include <vitrail/core/workspace.h>
+
+namespace vitrail {
+inline namespace v0 {
+
+namespace detail {
+struct QueueState;
+}
+
+struct Progress {
+    const char* step;  ///< "conservative: 65536 of 202520 triangles"-like short text, valid during the callback
+    double fraction;   ///< of the running call, 0 to 1
+};
+
+enum class Precision {
+    best,    ///< doubles decide a voxel where the device has them
+    single,  ///< single precision: `conservative` still misses nothing, its bounds move outward
+};
+
+/// Belongs to one thread at a time, as do its workspace and what was made with it. Move-only.
+class Queue {
+public:
+    explicit Queue(Device& device);
+    explicit Queue(std::shared_ptr<detail::QueueState> state);
+    Queue(Queue&&) noexcept;
+    Queue& operator=(Queue&&) noexcept;
+    ~Queue();
+
+    /// Waits until everything enqueued has run. Throws Error (deviceFailed).
+    void finish();
+
+    Workspace& workspace();
+    DeviceInfo deviceInfo() const;
+    Counters counters() const;  ///< of the device
+
+    void setPrecision(Precision precision);
+    Precision precision() const;  ///< single also where the device has no doubles
+
+    /// Called between the steps of long calls; returning false cancels the call: Error (cancelled), outputs unchanged.
+    void setProgress(std::function<bool(const Progress&)> progress);
+
+    const std::shared_ptr<detail::QueueState>& state() const { return state_; }
+
+private:
+    std::shared_ptr<detail::QueueState> state_;
+    Workspace workspace_;
+};
+
+}  // namespace v0
+}  // namespace vitrail

@@ -1,0 +1,62 @@
+// vitrail/methods.h: the one table of methods. It drives the command line's help, `vitrail info --methods`, tests, benches, charts
+// and the README's method table. A new method is a row here, a header, a host file, a kernel and a test with one stem.
+#pragma once
+#include <array>
+#include <span>
+#include <string_view>
+
+namespace vitrail {
+inline namespace v0 {
+
+enum class Family { surfaceVoxels, glass, shadow };
+enum class Guarantee { conservative, watertight, exact, none };
+enum class Role { product, baseline };
+
+/// An option of a method: a member of its type with the same name. Checked against its range, never clamped.
+struct MethodOption {
+    std::string_view name;
+    double byDefault, least, most;
+    std::string_view unit, help;
+};
+
+struct Method {
+    std::string_view name;   ///< command-line name, file stem, kernel prefix, chart label and JSON value
+    Family family;
+    std::string_view paper;  ///< author, year, section
+    Guarantee guarantee;
+    std::string_view says;   ///< the guarantee in one sentence, as measured
+    bool channels;           ///< can make channels
+    bool cameraGrids;        ///< works on camera grids as well as on boxes
+    Role role;
+    std::array<MethodOption, 3> options;  ///< unused rows have an empty name
+};
+
+inline constexpr MethodOption kNoOption{"", 0, 0, 0, "", ""};
+
+inline constexpr Method kMethods[] = {
+    {"conservative", Family::surfaceVoxels, "Schwarz & Seidel 2010, section 3; Pantaleoni 2011", Guarantee::conservative,
+     "Every cell that a triangle touches: nothing missing and nothing extra outside ties of 1e-5 cell.", true, false, Role::product,
+     {kNoOption, kNoOption, kNoOption}},
+    {"sampled", Family::surfaceVoxels, "Eisemann & Decoret 2006, section 2", Guarantee::exact,
+     "One voxel for each column centre that a triangle covers (top-left rule): equal to a scan of column centres bit for bit; "
+     "steep and sub-cell triangles leave holes.",
+     true, true, Role::product,
+     {kNoOption, kNoOption, kNoOption}},
+    {"points", Family::surfaceVoxels, "Fei, Wang & Chen 2012, section 3", Guarantee::none,
+     "Never a voxel that no triangle touches; at safetyFactor 1 misses at most 0.1 % of the thin surface.", true, true,
+     Role::product,
+     {MethodOption{"safetyFactor", 1.0, 0.25, 16.0, "1", "gamma of eq. 1; higher misses less and costs about its square"}, kNoOption,
+      kNoOption}},
+};
+
+constexpr std::span<const Method> methods() { return kMethods; }
+
+/// The row of `name`, or null.
+constexpr const Method* findMethod(std::string_view name) {
+    for (const Method& method : kMethods)
+        if (method.name == name) return &method;
+    return nullptr;
+}
+
+}  // namespace v0
+}  // namespace vitrail

@@ -1,0 +1,37 @@
+// vitrail/scene/material.h: what a surface or body is made of, in the terms of glTF 2.0 and its transmission, ior and volume
+// extensions.
+#pragma once
+#include <string>
+#include <vector>
+
+#include <vitrail/core/vector.h>
+
+namespace vitrail {
+inline namespace v0 {
+
+enum class AlphaMode { opaque, mask, blend };
+
+struct Material {
+    std::string name;
+    Float3 baseColour{0.8f};              ///< linear RGB, 0 to 1
+    float alpha = 1.0f;                   ///< 0 to 1
+    AlphaMode alphaMode = AlphaMode::opaque;
+    float alphaCutoff = 0.5f;             ///< with AlphaMode::mask
+    bool doubleSided = false;
+    float transmission = 0.0f;            ///< 0 opaque, 1 glass
+    float indexOfRefraction = 1.5f;       ///< 1 to 3
+    float roughness = 1.0f;               ///< 0 to 1
+    Float3 emission{0.0f};                ///< linear RGB
+    float thickness = 0.0f;               ///< scene units; 0: thin walled
+    float attenuationDistance = 0.0f;     ///< scene units after which `attenuationColour` is left; 0: infinite
+    Float3 attenuationColour{1.0f};       ///< linear RGB, above 0 to 1
+    int baseColourTexture = -1;           ///< index into Scene::textures, or -1
+    Float2 textureOffset{0.0f}, textureScale{1.0f};  ///< KHR_texture_transform of the base colour texture
+    float textureRotation = 0.0f;         ///< radians, counter-clockwise
+
+    /// Absorption coefficient of Beer-Lambert per scene unit and channel: -ln(attenuationColour) / attenuationDistance.
+    Float3 absorption() const;
+};
+
+}  // namespace v0
+}  // namespace vitrail
