@@ -13,14 +13,18 @@ typedef struct {
     global uint* count;
     global long* normalSum;  // three a voxel
     global uint* material;
+    global uint* list;    // triangles of each voxel, next free slot in cursor
+    global uint* cursor;
 } Channels;
 
-static inline void channels_add(const Channels* channels, size_t word, uint bit, const long normal[3], uint material) {
+static inline void channels_add(const Channels* channels, size_t word, uint bit, const long normal[3], uint material,
+                                uint triangle) {
     const size_t index = bits_rank(channels->bits, channels->rank, word, bit);
     if (channels->count) atomic_inc(channels->count + index);
     if (channels->normalSum)
         for (int k = 0; k < 3; ++k) fixed_add(channels->normalSum + 3 * index + k, normal[k]);
     if (channels->material) atomic_min(channels->material + index, material);
+    if (channels->list) channels->list[atomic_inc(channels->cursor + index)] = triangle;
 }
 
 static inline void channels_normal(const Point unit, long fixed[3]) {

@@ -10,7 +10,8 @@
 
 // Calls for every run of touched cells in columns [xLeast, xMost] x [yLeast, yMost]: ORs its bits, or adds to the channels.
 static inline void conservative_columns(const vitrail_GridDesc* grid, const Runs* runs, int xLeast, int xMost, int yLeast, int yMost,
-                                 global uint* bits, const Channels* channels, const long normal[3], uint material) {
+                                 global uint* bits, const Channels* channels, const long normal[3], uint material,
+                                        uint triangle) {
     for (int y = yLeast; y <= yMost; ++y) {
         int xFirst = xLeast, xLast = xMost;
         const real row = REAL(y - runs->yFirst);
@@ -36,7 +37,8 @@ static inline void conservative_columns(const vitrail_GridDesc* grid, const Runs
                 bits_set_run(bits, word, (uint)zFirst, (uint)zLast);
             else
                 for (int z = zFirst; z <= zLast; ++z)
-                    channels_add(channels, word + (size_t)(z >> 5) * VITRAIL_WORDS_PER_TILE, (uint)z & 31u, normal, material);
+                    channels_add(channels, word + (size_t)(z >> 5) * VITRAIL_WORDS_PER_TILE, (uint)z & 31u, normal, material,
+                                 triangle);
         }
     }
 }
@@ -85,7 +87,7 @@ static inline void conservative_triangle(const vitrail_GridDesc* grid, global co
         for (uint i = slot; i < taskCapacity && i - slot < count; ++i) tasks[i] = (uint2)(0xffffffffu, 0u);
     }
     run_bounds(&t, delta, &runs);
-    conservative_columns(grid, &runs, xLeast, xMost, yLeast, yMost, bits, channels, normal, material);
+    conservative_columns(grid, &runs, xLeast, xMost, yLeast, yMost, bits, channels, normal, material, triangle);
 }
 
 kernel void conservative_bits(const vitrail_GridDesc grid, global const float* positions, global const uint* indices, uint vertexCount,
@@ -112,7 +114,7 @@ kernel void conservative_channels(const vitrail_GridDesc grid, global const floa
                                   global uint* counts, global long* normalSums, global uint* materialIds,
                                   global const uint* materials, global uint2* tasks, uint taskCapacity, global uint* status,
                                   ulong count, uint perItem) {
-    const Channels channels = {bits, rank, counts, normalSums, materialIds};
+    const Channels channels = {bits, rank, counts, normalSums, materialIds, 0, 0};
     FOR_RANGE(i, count, perItem)
         conservative_triangle(&grid, positions, indices, vertexCount, first + (uint)i, -1, 0, &channels, materials, tasks, taskCapacity,
                               status);
@@ -123,7 +125,7 @@ kernel void conservative_channels_tasks(const vitrail_GridDesc grid, global cons
                                         global long* normalSums, global uint* materialIds, global const uint* materials,
                                         global uint2* tasks, uint taskCapacity, global uint* status, uint groups) {
     const uint count = min(status[STATUS_TASKS], taskCapacity);
-    const Channels channels = {bits, rank, counts, normalSums, materialIds};
+    const Channels channels = {bits, rank, counts, normalSums, materialIds, 0, 0};
     for (uint i = (uint)get_global_id(0); i < count; i += groups) {
         const uint2 task = tasks[i];
         if (task.x != 0xffffffffu)
