@@ -8,7 +8,6 @@
 //   1-3    the coordinate axes
 //   4      n, the triangle's normal
 //   5-13   edge x coordinate axis
-//   14-19  n x edge and n x coordinate axis: for a segment in the triangle's plane, or almost; thin only
 // Below 0 the separation is exactly how far the triangle must move to come free; above 0 it is at most their distance and at
 // least 1/sqrt(3) of it. So "separation < -kTie" says that the triangle meets B wherever it is moved by kTie, "> kTie" that it
 // never does. All directions of a cell serve its segments too, and a segment lies in its cell, so thin is a subset of
@@ -97,10 +96,9 @@ using Corners = std::array<Double3, 3>;
 
 /// The directions of the file's head that do not vanish, with the triangle's projection on each.
 struct Directions {
-    std::array<Double3, 19> unit;
-    std::array<double, 19> low, high;
-    int cell = 0;  // the first so many are for cells, all for segments
-    int all = 0;
+    std::array<Double3, 13> unit;
+    std::array<double, 13> low, high;
+    int count = 0;
 
     explicit Directions(const Corners& v) {
         const std::array<Double3, 3> axes{Double3(1, 0, 0), Double3(0, 1, 0), Double3(0, 0, 1)};
@@ -110,9 +108,6 @@ struct Directions {
         add(normal, v);
         for (const Double3& edge : edges)
             for (const Double3& axis : axes) add(glm::cross(edge, axis), v);
-        cell = all;
-        for (const Double3& edge : edges) add(glm::cross(normal, edge), v);
-        for (const Double3& axis : axes) add(glm::cross(normal, axis), v);
     }
 
 private:
@@ -131,18 +126,18 @@ private:
         if (!(length > 0)) return;
         const Double3 u = direction / length;
         const double a = glm::dot(u, v[0]), b = glm::dot(u, v[1]), c = glm::dot(u, v[2]);
-        unit[all] = u;
-        low[all] = std::min({a, b, c});
-        high[all] = std::max({a, b, c});
-        ++all;
+        unit[count] = u;
+        low[count] = std::min({a, b, c});
+        high[count] = std::max({a, b, c});
+        ++count;
     }
 };
 
 /// Separation of the triangle from the box (or segment) of half edges `half` around `centre`; once above `enough` it is not
 /// finished.
-double separation(const Directions& d, int count, const Double3& centre, const Double3& half, double enough) {
+double separation(const Directions& d, const Double3& centre, const Double3& half, double enough) {
     double greatest = -1e300;
-    for (int i = 0; i < count; ++i) {
+    for (int i = 0; i < d.count; ++i) {
         const Double3& u = d.unit[i];
         const double middle = u.x * centre.x + u.y * centre.y + u.z * centre.z;
         const double reach = std::abs(u.x) * half.x + std::abs(u.y) * half.y + std::abs(u.z) * half.z;
@@ -169,12 +164,12 @@ void visitCells(const Corners& v, const Directions& d, Uint3 size, Visit&& visit
         for (std::int64_t by = range[1].first; by <= range[1].last; by += kBlock)
             for (std::int64_t bx = range[0].first; bx <= range[0].last; bx += kBlock) {
                 const Double3 low(bx, by, bz), high(end(0, bx), end(1, by), end(2, bz));
-                if (separation(d, d.cell, (low + high) * 0.5, (high - low) * 0.5, kTie) > kTie) continue;
+                if (separation(d, (low + high) * 0.5, (high - low) * 0.5, kTie) > kTie) continue;
                 for (std::int64_t z = bz; z < end(2, bz); ++z)
                     for (std::int64_t y = by; y < end(1, by); ++y)
                         for (std::int64_t x = bx; x < end(0, bx); ++x) {
                             const Double3 centre(double(x) + 0.5, double(y) + 0.5, double(z) + 0.5);
-                            const double apart = separation(d, d.cell, centre, Double3(0.5), kTie);
+                            const double apart = separation(d, centre, Double3(0.5), kTie);
                             if (apart <= kTie)
                                 visit(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(z),
                                       centre, apart);
@@ -247,7 +242,7 @@ Truth thin(const MeshView& mesh, const Grid& grid) {
                 for (int axis = 0; axis < 3; ++axis) {
                     Double3 half(0);
                     half[axis] = 0.5;
-                    const double apart = separation(d, d.all, centre, half, kTie);
+                    const double apart = separation(d, centre, half, kTie);
                     if (apart > kTie) continue;
                     mark(truth.possible, x, y, z);
                     if (apart < -kTie) {
@@ -260,7 +255,7 @@ Truth thin(const MeshView& mesh, const Grid& grid) {
                         Double3 moved = centre;
                         moved[(axis + 1) % 3] += kTie * kMoves[i][0];
                         moved[(axis + 2) % 3] += kTie * kMoves[i][1];
-                        if (separation(d, d.all, moved, half, kRounding) <= kRounding) copies |= 1u << i;
+                        if (separation(d, moved, half, kRounding) <= kRounding) copies |= 1u << i;
                     }
                     if (copies != 0) found.push_back({3 * cell + static_cast<std::uint64_t>(axis), copies});
                 }

@@ -4,6 +4,7 @@
 #include <vitrail/grid/camera.h>
 #include <vitrail/reference/truth.h>
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -181,6 +182,31 @@ TEST(SampledTruth, RoundingDoesNotOpenClosedSurfaces) {
         }
         expectEven(cone, grid, 1);
     }
+}
+
+// Triangles edge-on to z whose plane holds a column's centre line, but whose voxel coordinates are rounded: rounding may find
+// them met, and then in a slice of theirs, however wild the quotient of two rounding errors is.
+TEST(SampledTruth, RoundingDoesNotLeaveTheTrianglesSlices) {
+    test::Random random(26);
+    const float edge =
+        0.7001953125f;  // 717/1024: the centre's world position, 4.5 edges, is a float, its neighbours' quotients are not
+    const Grid grid = Grid::box(Float3(0), edge, {9, 9, 64});
+    unsigned met = 0;
+    for (int round = 0; round < 20000; ++round) {
+        std::array<Float3, 3> p;
+        for (Float3& corner : p) {
+            const float t = std::round(random.in(-1, 1) * 512) / 1024;
+            corner = Float3(4.5f * edge + t, 4.5f * edge + 3 * t, edge * random.in(20, 24));
+        }
+        const VoxelBits bits = sampled(triangles({p[0], p[1], p[2]}), grid);
+        if (bits.occupied() == 0) continue;
+        ++met;
+        const double low = std::floor(grid.toVoxel(glm::min(p[0], glm::min(p[1], p[2]))).z);
+        const double high = std::floor(grid.toVoxel(glm::max(p[0], glm::max(p[1], p[2]))).z);
+        for (unsigned z = 0; z < 64; ++z)
+            EXPECT_TRUE(!bits.at(4, 4, z) || (z >= low && z <= high)) << round << ": " << z << " of " << low << " to " << high;
+    }
+    EXPECT_GT(met, 100u);
 }
 
 PerspectiveGrid view(Uint3 size) {
