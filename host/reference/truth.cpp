@@ -1,0 +1,394 @@
+// reference/truth.cpp: which cells a mesh touches, see vitrail/reference/truth.h.
+//
+// conservative, thin: in voxel coordinates, a triangle and a convex body B (the cell, or one of its three centre segments) are
+// compared along unit directions u (Akenine-Moeller 2001). The gap along u is the distance between the two projections, negative
+// by how much they overlap; the *separation* is the greatest gap over the directions below. A direction more never makes it
+// wrong, since no gap exceeds the supremum over all directions; a direction that vanishes (zero-area triangles) is left out,
+// which leaves what a segment or a point needs.
+//   1-3    the coordinate axes
+//   4      n, the triangle's normal
+//   5-13   edge x coordinate axis
+// Below 0 the separation is exactly how far the triangle must move to come free; above 0 it is at most their distance and at
+// least 1/sqrt(3) of it. So "separation < -kTie" says that the triangle meets B wherever it is moved by kTie, "> kTie" that it
+// never does. All directions of a cell serve its segments too, and a segment lies in its cell, so thin is a subset of
+// conservative to the bit.
+//
+// sampled: the arithmetic at its function is a contract with kernels/voxelize/sampled.cl. This file is compiled without
+// contraction.
+#include <vitrail/core/error.h>
+#include <vitrail/reference/truth.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace vitrail {
+inline namespace v0 {
+namespace reference {
+
+namespace {
+
+/// Calls work(begin, end) on pieces of [0, count) on all cores. The first exception is thrown on.
+template <class Work>
+void inParallel(std::size_t count, std::size_t piece, Work&& work) {
+    std::atomic<std::size_t> next{0};
+    std::mutex lock;
+    std::exception_ptr failure;
+    const auto run = [&] {
+        try {
+            for (std::size_t begin; (begin = next.fetch_add(piece)) < count;) work(begin, std::min(begin + piece, count));
+        } catch (...) {
+            const std::lock_guard guard(lock);
+            if (!failure) failure = std::current_exception();
+            next = count;
+        }
+    };
+    const std::size_t useful = (count + piece - 1) / piece;
+    std::vector<std::thread> threads;
+    for (std::size_t i = 1; i < std::min<std::size_t>(useful, std::thread::hardware_concurrency()); ++i)
+        threads.emplace_back(run);
+    run();
+    for (std::thread& thread : threads) thread.join();
+    if (failure) std::rethrow_exception(failure);
+}
+
+constexpr std::size_t kPiece = 64;  // triangles a thread takes at a time
+
+/// The corners of triangle t in world space; false if the voxelizers would skip it.
+bool cornersOf(const MeshView& mesh, std::size_t t, std::array<Float3, 3>& pWorld) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::uint32_t index = mesh.index(3 * t + i);
+        if (index >= mesh.positions.count) return false;
+        pWorld[i] = mesh.positions[index];
+        if (!std::isfinite(pWorld[i].x) || !std::isfinite(pWorld[i].y) || !std::isfinite(pWorld[i].z)) return false;
+    }
+    return true;
+}
+
+/// OR is the only write that threads share, so their order leaves no trace.
+void mark(VoxelBits& bits, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    std::atomic_ref<std::uint32_t> word(bits.words[bits.grid.wordIndex(x, y, z)]);
+    const std::uint32_t bit = 1u << (z & 31);
+    if (!(word.load(std::memory_order_relaxed) & bit)) word.fetch_or(bit, std::memory_order_relaxed);
+}
+
+/// Cells first to last, both included, or none if first > last.
+struct Range {
+    std::int64_t first, last;
+};
+
+/// [low, high] cut to [0, size - 1], for numbers that need not fit an integer.
+Range cut(double low, double high, std::uint32_t size) {
+    const double most = double(size) - 1;
+    if (!(low <= most) || !(high >= 0)) return {0, -1};
+    return {static_cast<std::int64_t>(std::max(low, 0.0)), static_cast<std::int64_t>(std::min(high, most))};
+}
+
+// ---- conservative and thin -------------------------------------------------------------------------------------------------
+
+using Corners = std::array<Double3, 3>;
+
+/// The directions of the file's head that do not vanish, with the triangle's projection on each.
+struct Directions {
+    std::array<Double3, 13> unit;
+    std::array<double, 13> low, high;
+    int count = 0;
+
+    explicit Directions(const Corners& v) {
+        const std::array<Double3, 3> axes{Double3(1, 0, 0), Double3(0, 1, 0), Double3(0, 0, 1)};
+        const std::array<Double3, 3> edges{v[1] - v[0], v[2] - v[1], v[0] - v[2]};
+        const Double3 normal = unitNormal(edges);
+        for (const Double3& axis : axes) add(axis, v);
+        add(normal, v);
+        for (const Double3& edge : edges)
+            for (const Double3& axis : axes) add(glm::cross(edge, axis), v);
+    }
+
+private:
+    /// From the two shortest edges, which lose least to rounding on a sliver; 0 for zero area.
+    static Double3 unitNormal(const std::array<Double3, 3>& edges) {
+        std::array<int, 3> order{0, 1, 2};
+        std::sort(order.begin(), order.end(),
+                  [&](int a, int b) { return glm::dot(edges[a], edges[a]) < glm::dot(edges[b], edges[b]); });
+        const Double3 n = glm::cross(edges[order[0]], edges[order[1]]);
+        const double length = std::sqrt(glm::dot(n, n));
+        return length > 0 ? n / length : Double3(0);
+    }
+
+    void add(const Double3& direction, const Corners& v) {
+        const double length = std::sqrt(glm::dot(direction, direction));
+        if (!(length > 0)) return;
+        const Double3 u = direction / length;
+        const double a = glm::dot(u, v[0]), b = glm::dot(u, v[1]), c = glm::dot(u, v[2]);
+        unit[count] = u;
+        low[count] = std::min({a, b, c});
+        high[count] = std::max({a, b, c});
+        ++count;
+    }
+};
+
+/// Separation of the triangle from the box (or segment) of half edges `half` around `centre`; once above `enough` it is not
+/// finished.
+double separation(const Directions& d, const Double3& centre, const Double3& half, double enough) {
+    double greatest = -1e300;
+    for (int i = 0; i < d.count; ++i) {
+        const Double3& u = d.unit[i];
+        const double middle = u.x * centre.x + u.y * centre.y + u.z * centre.z;
+        const double reach = std::abs(u.x) * half.x + std::abs(u.y) * half.y + std::abs(u.z) * half.z;
+        greatest = std::max({greatest, d.low[i] - (middle + reach), (middle - reach) - d.high[i]});
+        if (greatest > enough) break;
+    }
+    return greatest;
+}
+
+/// Calls visit(x, y, z, centre, separation) for each cell of the triangle's box in the grid that is not separated from it by more
+/// than kTie. Blocks of 8^3 cells that are separated are skipped whole: what is apart from the block is apart from its cells.
+template <class Visit>
+void visitCells(const Corners& v, const Directions& d, Uint3 size, Visit&& visit) {
+    std::array<Range, 3> range;
+    for (int a = 0; a < 3; ++a) {
+        // Cell i is touched where i <= high and i + 1 >= low, each by a tie.
+        range[a] = cut(std::ceil(std::min({v[0][a], v[1][a], v[2][a]}) - kTie) - 1,
+                       std::floor(std::max({v[0][a], v[1][a], v[2][a]}) + kTie), size[a]);
+        if (range[a].first > range[a].last) return;
+    }
+    constexpr std::int64_t kBlock = 8;
+    const auto end = [&](int a, std::int64_t begin) { return std::min(begin + kBlock, range[a].last + 1); };
+    for (std::int64_t bz = range[2].first; bz <= range[2].last; bz += kBlock)
+        for (std::int64_t by = range[1].first; by <= range[1].last; by += kBlock)
+            for (std::int64_t bx = range[0].first; bx <= range[0].last; bx += kBlock) {
+                const Double3 low(bx, by, bz), high(end(0, bx), end(1, by), end(2, bz));
+                if (separation(d, (low + high) * 0.5, (high - low) * 0.5, kTie) > kTie) continue;
+                for (std::int64_t z = bz; z < end(2, bz); ++z)
+                    for (std::int64_t y = by; y < end(1, by); ++y)
+                        for (std::int64_t x = bx; x < end(0, bx); ++x) {
+                            const Double3 centre(double(x) + 0.5, double(y) + 0.5, double(z) + 0.5);
+                            const double apart = separation(d, centre, Double3(0.5), kTie);
+                            if (apart <= kTie)
+                                visit(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(z),
+                                      centre, apart);
+                        }
+            }
+}
+
+void refusePerspective(const Grid& grid, const char* name) {
+    if (grid.desc().kind == VITRAIL_GRID_PERSPECTIVE)
+        throw Error(ErrorCode::unsupported, {.what = std::string("the ") + name + " truth has no answer for perspective grids",
+                                             .where = {},
+                                             .during = {},
+                                             .remedy = "a box or an orthographic grid, or reference::sampled"});
+}
+
+bool cornersInGrid(const MeshView& mesh, std::size_t t, const Grid& grid, Corners& v) {
+    std::array<Float3, 3> pWorld;
+    if (!cornersOf(mesh, t, pWorld)) return false;
+    for (int i = 0; i < 3; ++i) v[i] = grid.toVoxel(pWorld[i]);
+    return true;
+}
+
+/// A segment that a triangle meets or misses by less than kTie, and which of its moved copies that triangle meets.
+struct Tie {
+    std::uint64_t segment;  // 3 * cell + axis
+    std::uint32_t copies;
+};
+
+/// How a copy is moved across the segment, in kTie: four directions at right angles, none along an axis or a diagonal, where
+/// edges of regular meshes run.
+constexpr double kMoves[4][2] = {{0.8, 0.6}, {-0.6, 0.8}, {-0.8, -0.6}, {0.6, -0.8}};
+constexpr double kRounding = 1e-9;  // in cells; above the rounding of a separation in the largest grid, far below kTie
+
+}  // namespace
+
+Truth conservative(const MeshView& mesh, const Grid& grid) {
+    refusePerspective(grid, "conservative");
+    Truth truth{VoxelBits(grid), VoxelBits(grid)};
+    inParallel(mesh.triangleCount(), kPiece, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            Corners v;
+            if (!cornersInGrid(mesh, t, grid, v)) continue;
+            visitCells(v, Directions(v), grid.size(), [&](auto x, auto y, auto z, const Double3&, double apart) {
+                mark(truth.possible, x, y, z);
+                if (apart < -kTie) mark(truth.certain, x, y, z);
+            });
+        }
+    });
+    return truth;
+}
+
+// The tie band of thin is one of distance: a segment is certain to be met if a triangle's separation from it is below -kTie, and
+// a tie up to +kTie. A segment through an edge or a corner that triangles share is a tie with each of them, yet the surface that
+// they make is not left by a small move. So, among the ties, a segment is certain too if four copies of it, moved across by kTie
+// (kMoves) and cut shorter by 2 kTie at both ends, each meet a triangle (separation <= kRounding), whichever that is.
+Truth thin(const MeshView& mesh, const Grid& grid) {
+    refusePerspective(grid, "thin");
+    Truth truth{VoxelBits(grid), VoxelBits(grid)};
+    const Uint3 size = grid.size();
+    std::mutex lock;
+    std::vector<Tie> ties;
+    inParallel(mesh.triangleCount(), kPiece, [&](std::size_t begin, std::size_t end) {
+        std::vector<Tie> found;
+        for (std::size_t t = begin; t < end; ++t) {
+            Corners v;
+            if (!cornersInGrid(mesh, t, grid, v)) continue;
+            const Directions d(v);
+            visitCells(v, d, size, [&](auto x, auto y, auto z, const Double3& centre, double) {
+                const std::uint64_t cell = (std::uint64_t(z) * size.y + y) * size.x + x;
+                for (int axis = 0; axis < 3; ++axis) {
+                    Double3 half(0);
+                    half[axis] = 0.5;
+                    const double apart = separation(d, centre, half, kTie);
+                    if (apart > kTie) continue;
+                    mark(truth.possible, x, y, z);
+                    if (apart < -kTie) {
+                        mark(truth.certain, x, y, z);
+                        continue;
+                    }
+                    half[axis] = 0.5 - 2 * kTie;
+                    std::uint32_t copies = 0;
+                    for (int i = 0; i < 4; ++i) {
+                        Double3 moved = centre;
+                        moved[(axis + 1) % 3] += kTie * kMoves[i][0];
+                        moved[(axis + 2) % 3] += kTie * kMoves[i][1];
+                        if (separation(d, moved, half, kRounding) <= kRounding) copies |= 1u << i;
+                    }
+                    if (copies != 0) found.push_back({3 * cell + static_cast<std::uint64_t>(axis), copies});
+                }
+            });
+        }
+        const std::lock_guard guard(lock);
+        ties.insert(ties.end(), found.begin(), found.end());
+    });
+    std::sort(ties.begin(), ties.end(), [](const Tie& a, const Tie& b) { return a.segment < b.segment; });
+    for (std::size_t i = 0; i < ties.size();) {
+        const std::uint64_t segment = ties[i].segment, cell = segment / 3;
+        std::uint32_t copies = 0;
+        for (; i < ties.size() && ties[i].segment == segment; ++i) copies |= ties[i].copies;
+        if (copies == 15u)
+            truth.certain.set(static_cast<std::uint32_t>(cell % size.x), static_cast<std::uint32_t>(cell / size.x % size.y),
+                              static_cast<std::uint32_t>(cell / size.x / size.y));
+    }
+    return truth;
+}
+
+// ---- sampled ---------------------------------------------------------------------------------------------------------------
+//
+// The contract. Every operation below is one IEEE double operation, rounded to nearest, in the order written; the operations
+// are + - * / floor and comparisons. Numbers of the grid are its floats and integers, converted.
+//
+// A corner p (world, floats) becomes (x, y, w, z): the line of column (i, j) is x = cx * w, y = cy * w, and z is the slice
+// coordinate.
+//   box, orthographic   (x, y, z) = Grid::toVoxel(p), w = 1 (not multiplied);  cx = i + 0.5, cy = j + 0.5
+//   perspective         e = p - eye, by component
+//                       x = (e.x * axisX.x + e.y * axisX.y) + e.z * axisX.z, y with axisY and w with axisZ likewise
+//                       z = ((w - near) / (far - near)) * size.z
+//                       cx = (((i + 0.5) / size.x) * 2 - 1) * tanX,  cy = (((j + 0.5) / size.y) * 2 - 1) * tanY
+// Corner k seen from the line (the shear of Woop, Benthin & Wald 2013):
+//   r_k = x_k - cx,  q_k = y_k - cy     (perspective: r_k = x_k - cx * w_k,  q_k = y_k - cy * w_k)
+// An edge crosses if one end has q <= 0 (call it a) and the other q > 0 (b), and  r_a * q_b > r_b * q_a.
+// The line meets the triangle if an odd number of its three edges cross (three comparisons, no orientation). Neither what an edge
+// says nor its end points' r and q depend on the triangle, so every line meets a closed surface an even number of times, whatever
+// is rounded; and centres on an edge belong to the triangle on the side of greater x, or of greater y where the edge is along x:
+// the top-left rule with row 0 on top, the same as half-open cells. Clipping is not needed: what lies behind the eye has z < 0.
+// Slice of the point that is met:
+//   U = r_1 * q_2 - r_2 * q_1,  V = r_2 * q_0 - r_0 * q_2,  W = r_0 * q_1 - r_1 * q_0
+//   z = z_0 + (V * (z_1 - z_0) + W * (z_2 - z_0)) / ((U + V) + W)
+//   if not z >= lowest then z = lowest;  if z > highest then z = highest     (of z_0, z_1, z_2; the first catches 0 / 0)
+//   z < 0 or z > size.z: nothing;  z == size.z: slice size.z - 1;  else slice floor(z).
+// The verdict of a column does not depend on which columns are tried, as long as they include floor(low - 0.5) to ceil(high -
+// 0.5) of the triangle's extent in columns.
+
+namespace {
+
+struct Sample {
+    double x, y, w, z;
+};
+
+bool crosses(double ra, double qa, double rb, double qb) {
+    const bool aBelow = qa <= 0, bBelow = qb <= 0;
+    if (aBelow == bBelow) return false;
+    return aBelow ? ra * qb > rb * qa : rb * qa > ra * qb;
+}
+
+double along(const vitrail_float4& axis, const Double3& e) {
+    return (e.x * double(axis.x) + e.y * double(axis.y)) + e.z * double(axis.z);
+}
+
+Sample sampleOf(const Grid& grid, Float3 pWorld) {
+    const vitrail_GridDesc& g = grid.desc();
+    if (g.kind != VITRAIL_GRID_PERSPECTIVE) {
+        const Double3 v = grid.toVoxel(pWorld);
+        return {v.x, v.y, 1.0, v.z};
+    }
+    const Double3 e(double(pWorld.x) - double(g.origin.x), double(pWorld.y) - double(g.origin.y),
+                    double(pWorld.z) - double(g.origin.z));
+    const double w = along(g.axisZ, e), nearDepth = g.extent.z, farDepth = g.extent.w;
+    return {along(g.axisX, e), along(g.axisY, e), w, ((w - nearDepth) / (farDepth - nearDepth)) * double(g.size.z)};
+}
+
+/// cx of column i (cy of row j).
+double centreOf(bool perspective, std::int64_t i, std::uint32_t size, double tangent) {
+    const double centre = double(i) + 0.5;
+    return perspective ? ((centre / double(size)) * 2.0 - 1.0) * tangent : centre;
+}
+
+/// The columns (or rows) that can meet the triangle, with what rounding needs; all of them if a corner is not before the eye.
+Range columnsOf(bool perspective, const std::array<double, 3>& x, const std::array<Sample, 3>& v, std::uint32_t size,
+                double tangent) {
+    std::array<double, 3> u = x;
+    if (perspective)
+        for (int k = 0; k < 3; ++k) {
+            if (!(v[k].w > 0)) return {0, std::int64_t(size) - 1};
+            u[k] = (x[k] / v[k].w / tangent * 0.5 + 0.5) * double(size);
+        }
+    return cut(std::floor(std::min({u[0], u[1], u[2]}) - 0.5), std::ceil(std::max({u[0], u[1], u[2]}) - 0.5), size);
+}
+
+}  // namespace
+
+VoxelBits sampled(const MeshView& mesh, const Grid& grid) {
+    VoxelBits bits(grid);
+    const vitrail_GridDesc& g = grid.desc();
+    const bool perspective = g.kind == VITRAIL_GRID_PERSPECTIVE;
+    const double depth = g.size.z;
+    inParallel(mesh.triangleCount(), kPiece, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            std::array<Float3, 3> pWorld;
+            if (!cornersOf(mesh, t, pWorld)) continue;
+            const std::array<Sample, 3> v{sampleOf(grid, pWorld[0]), sampleOf(grid, pWorld[1]), sampleOf(grid, pWorld[2])};
+            const double lowest = std::min({v[0].z, v[1].z, v[2].z}), highest = std::max({v[0].z, v[1].z, v[2].z});
+            if (!(highest >= 0) || !(lowest <= depth)) continue;
+            const Range columns = columnsOf(perspective, {v[0].x, v[1].x, v[2].x}, v, g.size.x, g.extent.x);
+            const Range rows = columnsOf(perspective, {v[0].y, v[1].y, v[2].y}, v, g.size.y, g.extent.y);
+            for (std::int64_t j = rows.first; j <= rows.last; ++j) {
+                const double cy = centreOf(perspective, j, g.size.y, g.extent.y);
+                std::array<double, 3> q;
+                for (int k = 0; k < 3; ++k) q[k] = perspective ? v[k].y - cy * v[k].w : v[k].y - cy;
+                for (std::int64_t i = columns.first; i <= columns.last; ++i) {
+                    const double cx = centreOf(perspective, i, g.size.x, g.extent.x);
+                    std::array<double, 3> r;
+                    for (int k = 0; k < 3; ++k) r[k] = perspective ? v[k].x - cx * v[k].w : v[k].x - cx;
+                    if (!(crosses(r[0], q[0], r[1], q[1]) ^ crosses(r[1], q[1], r[2], q[2]) ^ crosses(r[2], q[2], r[0], q[0])))
+                        continue;
+                    const double U = r[1] * q[2] - r[2] * q[1], V = r[2] * q[0] - r[0] * q[2], W = r[0] * q[1] - r[1] * q[0];
+                    double z = v[0].z + (V * (v[1].z - v[0].z) + W * (v[2].z - v[0].z)) / ((U + V) + W);
+                    if (!(z >= lowest)) z = lowest;
+                    if (z > highest) z = highest;
+                    if (z < 0 || z > depth) continue;
+                    const double slice = z == depth ? depth - 1 : std::floor(z);
+                    mark(bits, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), static_cast<std::uint32_t>(slice));
+                }
+            }
+        }
+    });
+    return bits;
+}
+
+}  // namespace reference
+}  // namespace v0
+}  // namespace vitrail
