@@ -120,11 +120,58 @@ void fill(const Batch& batch, int lane, std::int32_t beginY, std::int32_t endY, 
     const std::int32_t x0 = batch.first[0][lane], x1 = batch.end[0][lane];
     const std::int32_t z0 = batch.first[2][lane], z1 = batch.end[2][lane];
     const std::int32_t y0 = std::max(batch.first[1][lane], beginY), y1 = std::min(batch.end[1][lane], endY);
+    if (x0 >= x1 || z0 >= z1) return;  // beside the grid
     const std::int32_t tile0 = x0 >> 3, tile1 = (x1 - 1) >> 3;
+    const std::size_t tilesX = out.tilesX(), tilesZ = out.tilesZ();
+    const auto wordsOf = [&](std::int32_t t, std::int32_t y) {
+        return &out.words[((std::size_t(y >> 3) * tilesX + std::size_t(t)) * tilesZ) * 64 + std::size_t(y & 7) * 8];
+    };
+    // A box of one layer that the grid did not clip: a projection decides.
+    const auto layer = [&](int axis) {
+        const std::int32_t first = batch.first[axis][lane], end = batch.end[axis][lane];
+        return end - first == 1 && first > 0 && end < std::int32_t(out.size[axis]);
+    };
+    if (layer(2)) {
+        for (std::int32_t group = y0 & ~7; group < y1; group += 8) {
+            Ints begin, end;
+            batch.xy.runs(lane, iota + double(group), x0, x1, begin, end);
+            for (std::int32_t y = std::max(y0, group); y < std::min(y1, group + 8); ++y)
+                for (std::int32_t t = begin[y & 7] >> 3; t <= (end[y & 7] - 1) >> 3; ++t) {
+                    const Ints x = iotaInts + 8 * t;
+                    *reinterpret_cast<Words*>(wordsOf(t, y) + (z0 >> 5) * 64) |=
+                        Words((x >= begin[y & 7]) & (x < end[y & 7])) & (1u << (z0 & 31));
+                }
+        }
+        return;
+    }
+    if (layer(1)) {
+        for (std::int32_t t = tile0; t <= tile1; ++t) {
+            Ints begin, end;
+            batch.zx.runs(lane, iota + double(8 * t), z0, z1, begin, end);
+            const Ints x = iotaInts + 8 * t;
+            end &= (x >= x0) & (x < x1);
+            for (std::int32_t block = z0 >> 5; block <= (z1 - 1) >> 5; ++block)
+                setRuns(wordsOf(t, y0) + block * 64, begin, end, block * 32);
+        }
+        return;
+    }
+    if (layer(0)) {
+        for (std::int32_t group = y0 & ~7; group < y1; group += 8) {
+            Ints begin, end;
+            batch.zy.runs(lane, iota + double(group), z0, z1, begin, end);
+            for (std::int32_t y = std::max(y0, group); y < std::min(y1, group + 8); ++y) {
+                std::uint32_t* words = wordsOf(tile0, y) + (x0 & 7);
+                for (std::int32_t block = begin[y & 7] >> 5; block <= (end[y & 7] - 1) >> 5; ++block) {
+                    const std::int32_t from = std::max(begin[y & 7] - block * 32, 0), to = std::min(end[y & 7] - block * 32, 32);
+                    if (from < to) words[block * 64] |= ~0u << from & ~0u >> (32 - to);
+                }
+            }
+        }
+        return;
+    }
     for (std::int32_t t = tile0; t <= tile1; ++t)
         batch.zx.runs(lane, iota + double(8 * t), z0, z1, columns[std::size_t(2 * (t - tile0))],
                       columns[std::size_t(2 * (t - tile0) + 1)]);
-    const std::size_t tilesX = out.tilesX(), tilesZ = out.tilesZ();
     for (std::int32_t group = y0 & ~7; group < y1; group += 8) {
         Ints rowX0, rowX1, rowZ0, rowZ1;
         batch.xy.runs(lane, iota + double(group), x0, x1, rowX0, rowX1);
@@ -151,8 +198,7 @@ void fill(const Batch& batch, int lane, std::int32_t beginY, std::int32_t endY, 
                     if (from >= to) continue;
                     block0 = from >> 5, block1 = (to - 1) >> 5;
                 }
-                std::uint32_t* words =
-                    &out.words[((std::size_t(y >> 3) * tilesX + std::size_t(t)) * tilesZ) * 64 + std::size_t(k) * 8];
+                std::uint32_t* words = wordsOf(t, y);
                 for (std::int32_t block = block0; block <= block1; ++block) setRuns(words + block * 64, first, end, block * 32);
             }
         }
@@ -175,6 +221,7 @@ void voxelizeEdgeRuns(std::span<const float> xyz, std::span<const std::uint32_t>
     const std::size_t points = xyz.size() / 3, triangles = indices.size() / 3, rows = out.tilesY();
     int shift = 0;  // a slab is 2^shift rows of tiles
     while ((rows >> (shift + 1)) >= 16 * threads) ++shift;
+    const double height = grid.size[1];
     const std::size_t slabs = ((rows - 1) >> shift) + 1;
     scratch.points.resize(points);
     scratch.lists.resize(threads * slabs);
@@ -189,20 +236,14 @@ void voxelizeEdgeRuns(std::span<const float> xyz, std::span<const std::uint32_t>
         std::vector<std::uint32_t>* lists = &scratch.lists[t * slabs];
         for (std::size_t s = 0; s < slabs; ++s) lists[s].clear();
         for (std::size_t i = triangles * t / threads; i < triangles * (t + 1) / threads; ++i) {
-            const Point &a = scratch.points[indices[3 * i]], &b = scratch.points[indices[3 * i + 1]],
-                        &c = scratch.points[indices[3 * i + 2]];
-            if (std::isnan(a[0] + b[0] + c[0])) continue;
-            double low[3], high[3];
-            bool meets = true;
-            for (int k = 0; k < 3; ++k) {
-                low[k] = std::min(std::min(a[k], b[k]), c[k]);
-                high[k] = std::max(std::max(a[k], b[k]), c[k]);
-                meets &= (high[k] >= 0) & (low[k] < grid.size[k]);
-            }
-            if (!meets) continue;
-            const std::size_t first = std::size_t(std::max(low[1], 0.0)) >> (3 + shift);
-            const std::size_t last = std::size_t(std::min(high[1], double(grid.size[1] - 1))) >> (3 + shift);
-            for (std::size_t s = first; s <= last; ++s) lists[s].push_back(std::uint32_t(i));
+            const double a = scratch.points[indices[3 * i]][1], b = scratch.points[indices[3 * i + 1]][1],
+                         c = scratch.points[indices[3 * i + 2]][1];
+            const double low = std::min(std::min(a, b), c), high = std::max(std::max(a, b), c);
+            if (!((high >= 0) & (low < height) & (a + b + c == a + b + c))) continue;
+            const std::size_t first = std::size_t(std::max(low, 0.0)) >> (3 + shift);
+            const std::size_t last = std::size_t(std::min(high, height - 1)) >> (3 + shift);
+            lists[first].push_back(std::uint32_t(i));
+            for (std::size_t s = first + 1; s <= last; ++s) lists[s].push_back(std::uint32_t(i));
         }
         sync.arrive_and_wait();
 

@@ -65,7 +65,7 @@ struct Bits {
 
 using Point = std::array<double, 3>;
 
-// A vertex in voxel coordinates; one on the upper face is drawn in by one bit, one that is not finite is NaN in x.
+// A vertex in voxel coordinates; one on the upper face is drawn in by one bit, one that is not finite is NaN.
 inline Point toVoxel(const Grid& grid, const float* p) {
     Point v;
     bool finite = true;
@@ -75,7 +75,7 @@ inline Point toVoxel(const Grid& grid, const float* p) {
         if (v[a] == size) v[a] = std::nextafter(size, 0.0);
         finite = finite && std::isfinite(v[a]);
     }
-    if (!finite) v[0] = std::numeric_limits<double>::quiet_NaN();
+    if (!finite) v.fill(std::numeric_limits<double>::quiet_NaN());
     return v;
 }
 
