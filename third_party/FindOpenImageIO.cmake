@@ -1,9 +1,10 @@
 # Finds OpenImageIO's headers and libraries and names them OpenImageIO::OpenImageIO. OpenImageIO's own CMake package refuses
-# to work where its command-line tools are not installed, which bring Qt with them on Debian and Ubuntu.
+# to work where its command-line tools are not installed, which bring Qt with them on Debian and Ubuntu; Imath's, which its
+# headers need, complains likewise of absent Python bindings.
 find_path(OpenImageIO_INCLUDE_DIR OpenImageIO/imageio.h)
 find_library(OpenImageIO_LIBRARY OpenImageIO)
 find_library(OpenImageIO_UTIL_LIBRARY OpenImageIO_Util)
-find_package(Imath CONFIG QUIET)
+find_path(OpenImageIO_IMATH_INCLUDE_DIR ImathVec.h PATH_SUFFIXES Imath)
 
 set(OpenImageIO_VERSION "")
 if(OpenImageIO_INCLUDE_DIR)
@@ -13,13 +14,13 @@ if(OpenImageIO_INCLUDE_DIR)
 endif()
 include(FindPackageHandleStandardArgs)
 find_package_handle_standard_args(OpenImageIO
-  REQUIRED_VARS OpenImageIO_LIBRARY OpenImageIO_UTIL_LIBRARY OpenImageIO_INCLUDE_DIR Imath_FOUND
+  REQUIRED_VARS OpenImageIO_LIBRARY OpenImageIO_UTIL_LIBRARY OpenImageIO_INCLUDE_DIR OpenImageIO_IMATH_INCLUDE_DIR
   VERSION_VAR OpenImageIO_VERSION)
-mark_as_advanced(OpenImageIO_INCLUDE_DIR OpenImageIO_LIBRARY OpenImageIO_UTIL_LIBRARY)
+mark_as_advanced(OpenImageIO_INCLUDE_DIR OpenImageIO_IMATH_INCLUDE_DIR OpenImageIO_LIBRARY OpenImageIO_UTIL_LIBRARY)
 
 if(OpenImageIO_FOUND AND NOT TARGET OpenImageIO::OpenImageIO)
   add_library(OpenImageIO::OpenImageIO UNKNOWN IMPORTED)
   set_target_properties(OpenImageIO::OpenImageIO PROPERTIES IMPORTED_LOCATION "${OpenImageIO_LIBRARY}")
-  target_include_directories(OpenImageIO::OpenImageIO INTERFACE ${OpenImageIO_INCLUDE_DIR})
-  target_link_libraries(OpenImageIO::OpenImageIO INTERFACE ${OpenImageIO_UTIL_LIBRARY} Imath::Imath)
+  target_include_directories(OpenImageIO::OpenImageIO INTERFACE ${OpenImageIO_INCLUDE_DIR} ${OpenImageIO_IMATH_INCLUDE_DIR})
+  target_link_libraries(OpenImageIO::OpenImageIO INTERFACE ${OpenImageIO_UTIL_LIBRARY})
 endif()
