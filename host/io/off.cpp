@@ -4,7 +4,7 @@
 // Ascii vertices stand one a line: after x y z come the normal (N), the colour (C, or three or four more numbers under plain OFF) and
 // s t (ST). Whole-number colours are 0 to 255 and sRGB, those with a point or exponent 0 to 1 and linear. Face colours are not read.
 //
-// Read here and not through OpenMesh 9 (io/README.md): its reader answers "success" with 32669 faces from memory that was never set
+// Read here and not through OpenMesh 9: its reader answers "success" with 32669 faces from memory that was never set
 // for a file with a comment, with no vertex where the counts stand on the first line, and loops over a count of 353,535,235,358
 // vertices in 309 bytes.
 #include <algorithm>

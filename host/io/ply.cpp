@@ -1,6 +1,6 @@
 // PLY, ascii and binary of both byte orders, with faces or with triangle strips (`tristrips`, -1 ends a strip).
 //
-// Read here and not through OpenMesh 9 (io/README.md): its reader answers "success" with no face for tristrips (igea.ply), with a
+// Read here and not through OpenMesh 9: its reader answers "success" with no face for tristrips (igea.ply), with a
 // triangle of vertices that do not exist for faces before vertices, with garbage after any list that it does not know and with zeros
 // after "nan"; it refuses uint list counts in ascii, goes on for ever in a header that breaks off, prints to stderr, and keeps its state in a
 // singleton that two threads would share. The tests hold both readers against each other where OpenMesh can read the file.

@@ -1,7 +1,7 @@
 // STL, binary and ascii. The format has no shared vertices: those at bit-equal positions become one, in the order of first use. Facet
 // normals and attribute bytes are not read; winding alone says which side is out.
 //
-// Read here and not through OpenMesh 9 (io/README.md): its reader leaves out triangles of equal vertices without a word, takes a
+// Read here and not through OpenMesh 9: its reader leaves out triangles of equal vertices without a word, takes a
 // word that is no number as 0, and makes a whole triangle of a file that ends in the middle of one.
 #include <algorithm>
 #include <array>
