@@ -19,6 +19,7 @@
 
 #include "io/json_text.h"
 #include "io/readers.h"
+#include "io/transform.h"
 
 namespace vitrail::io_detail {
 
@@ -30,8 +31,8 @@ using Bytes = std::span<const std::byte>;
 constexpr const char* kRead[] = {"KHR_mesh_quantization",   "KHR_texture_transform",  "KHR_materials_transmission",
                                  "KHR_materials_ior",       "KHR_materials_volume",   "KHR_materials_emissive_strength",
                                  "KHR_lights_punctual",     "EXT_texture_webp"};
-// How many characters, pictures, vertices ... a message lists before it only counts.
-constexpr std::size_t kMostVertices = 0xffffffffu;
+// A Mesh counts its vertices and triangles in 32 bits.
+constexpr std::size_t kMostCounted = 0xffffffffu;
 // Elements that an accessor without bytes of its own may claim, whatever the size of the file.
 constexpr std::size_t kFreeElements = 65536;
 
@@ -41,11 +42,9 @@ std::uint32_t readU32(Bytes bytes, std::size_t at) {
     return value;
 }
 
-std::string quoted(const std::string& text) { return "\"" + text + "\""; }
+std::string inQuotes(const std::string& text) { return "\"" + text + "\""; }
 
 std::string at(const char* list, std::size_t index) { return std::string(list) + "[" + std::to_string(index) + "]"; }
-
-bool finite(Float3 p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 // "%20" and its like; left alone where the two digits are missing.
 std::string percentDecoded(const std::string& uri) {
@@ -62,17 +61,6 @@ std::string percentDecoded(const std::string& uri) {
         }
     }
     return text;
-}
-
-// The inverse transpose up to a positive factor: normals keep their side under mirrored transforms and survive singular ones.
-glm::dmat3 normalMatrix(const glm::dmat3& m) {
-    const glm::dmat3 cofactor(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
-    return glm::dot(m[0], cofactor[0]) < 0 ? -cofactor : cofactor;
-}
-
-Float3 unitOrZero(glm::dvec3 v) {
-    const double length = glm::length(v);
-    return length > 0 && std::isfinite(length) ? Float3(v / length) : Float3(0.0f);
 }
 
 bool noImage(tinygltf::Image*, const int, std::string*, std::string*, int, int, const unsigned char*, int, void*) { return true; }
@@ -239,10 +227,10 @@ private:
         bool outside = path.empty() || path.is_absolute() || uri.find("://") != std::string::npos;
         for (const auto& part : path) outside = outside || part == "..";
         if (outside || path.native().find('\0') != std::string::npos) {
-            fail("the reference " + quoted(uri) + " leads out of the file's folder", place, "a file beside it, or a data URI");
+            fail("the reference " + inQuotes(uri) + " leads out of the file's folder", place, "a file beside it, or a data URI");
         }
         if (source_.folder.empty()) {
-            fail("the file " + quoted(uri) + " is needed, and there is no folder to look in", place, "a .glb, or data URIs");
+            fail("the file " + inQuotes(uri) + " is needed, and there is no folder to look in", place, "a .glb, or data URIs");
         }
         return readFile(source_.folder / path);
     }
@@ -686,7 +674,7 @@ private:
 
     Material material(std::size_t index) {
         const tinygltf::Material& from = model_.materials[index];
-        const std::string called = from.name.empty() ? std::to_string(index) : quoted(from.name);
+        const std::string called = from.name.empty() ? std::to_string(index) : inQuotes(from.name);
         const tinygltf::ExtensionMap& extensions = from.extensions;
         Material m;
         m.name = from.name;
@@ -705,7 +693,7 @@ private:
         } else if (from.alphaMode == "BLEND") {
             m.alphaMode = AlphaMode::blend;
         } else if (!from.alphaMode.empty() && from.alphaMode != "OPAQUE") {
-            warn("material " + called + ": alphaMode " + quoted(from.alphaMode) + " was taken as OPAQUE");
+            warn("material " + called + ": alphaMode " + inQuotes(from.alphaMode) + " was taken as OPAQUE");
         }
         m.alphaCutoff = inRange(from.alphaCutoff, 0, 1e30, called, "alphaCutoff");
         m.doubleSided = from.doubleSided;
@@ -889,7 +877,7 @@ private:
                 fail(std::to_string(other->count) + " values of an attribute for " + std::to_string(count) + " vertices", place);
             }
         }
-        if (mesh.positions.size() + count > kMostVertices) fail("more than 2^32 vertices", place, "fewer instances", ErrorCode::unsupported);
+        if (mesh.positions.size() + count > kMostCounted) fail("more than 2^32 vertices", place, "fewer instances", ErrorCode::unsupported);
 
         Vertices added;
         added.first = static_cast<std::uint32_t>(mesh.positions.size());
@@ -1040,7 +1028,7 @@ private:
             corners.resize(count);
             for (std::size_t i = 0; i < count; ++i) corners[i] = static_cast<std::uint32_t>(i);
         }
-        if (mesh.indices.size() / 3 + corners.size() > kMostVertices) {
+        if (mesh.indices.size() / 3 + corners.size() > kMostCounted) {
             fail("more than 2^32 triangles", place, "fewer instances", ErrorCode::unsupported);
         }
         const std::uint32_t id = from.material >= 0 ? static_cast<std::uint32_t>(from.material) : plainMaterial();
@@ -1079,7 +1067,7 @@ private:
         Mesh& mesh = scene_.mesh;
         const glm::dvec3 a(mesh.positions[first + corners[0]]), b(mesh.positions[first + corners[1]]), c(mesh.positions[first + corners[2]]);
         const Float3 normal = unitOrZero(glm::cross(b - a, c - a));
-        if (mesh.positions.size() + 3 > kMostVertices) fail("more than 2^32 vertices", "", "fewer instances", ErrorCode::unsupported);
+        if (mesh.positions.size() + 3 > kMostCounted) fail("more than 2^32 vertices", "", "fewer instances", ErrorCode::unsupported);
         for (std::uint32_t corner : corners) {
             const std::size_t v = first + corner;
             mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));

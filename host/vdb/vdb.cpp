@@ -1,6 +1,7 @@
 // vdb/vdb.cpp: occupancy as an OpenVDB file. Nothing of OpenVDB shows outside this file.
 #include <vitrail/io/vdb.h>
 
+#include <atomic>
 #include <cmath>
 #include <string>
 #include <system_error>
@@ -25,7 +26,7 @@ void expectBox(const Grid& grid, const std::filesystem::path& file) {
     if (!grid.isBox()) fail("a camera's grid has no place in OpenVDB's world", file, "a box grid, or .npy", ErrorCode::unsupported);
 }
 
-// Where grid cell (0,0,0) lies for the file's index space, and the file's axes for the grid's: index = sign * cell[axis] + offset.
+// The index of a cell in the file, whose axes may be turned.
 openvdb::Coord turned(std::uint32_t x, std::uint32_t y, std::uint32_t z, const Uint3& size, bool zUp) {
     if (!zUp) return {static_cast<int>(x), static_cast<int>(y), static_cast<int>(z)};
     return {static_cast<int>(x), static_cast<int>(size.z - 1 - z), static_cast<int>(y)};
@@ -114,7 +115,8 @@ void saveVdb(const std::filesystem::path& file, const VoxelBits& voxels, const S
     const Uint3 size = voxels.grid.size();
     // The part `io`, which has a helper for this, stands above this one.
     std::filesystem::path temporary = file;
-    temporary += ".tmp" + std::to_string(::getpid());
+    static std::atomic<unsigned> count{0};
+    temporary += ".tmp" + std::to_string(::getpid()) + "." + std::to_string(count++);
     try {
         openvdb::initialize();
         openvdb::BoolGrid::Ptr out = openvdb::BoolGrid::create(false);
