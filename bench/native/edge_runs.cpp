@@ -109,9 +109,9 @@ struct Batch {
 };
 
 // ORs the bits [first, end) of the word that starts at slice `base` into eight columns.
-void setRuns(std::uint32_t* words, Ints first, Ints end, std::int32_t base) {
-    first = most(first - base, Ints{});
-    end = least(end - base, Ints{} + 32);
+void setRuns(std::uint32_t* words, const Ints& begin, const Ints& finish, std::int32_t base) {
+    const Ints first = most(begin - base, Ints{});
+    const Ints end = least(finish - base, Ints{} + 32);
     const Words ones = ~Words{};
     const Words mask = (ones << Words(first & 31)) & (ones >> Words(-end & 31)) & Words(first < end);
     *reinterpret_cast<Row*>(words) |= mask;
