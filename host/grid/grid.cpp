@@ -170,11 +170,10 @@ Grid Grid::withVoxelSize(float edge, const Bounds& bounds, bool alignToOrigin) {
     Float3 origin = bounds.low;
     Uint3 count;
     for (int i = 0; i < 3; ++i) {
-        // A multiple of the edge that no float holds is rounded to one, downward where it would pass the bounds.
+        // A multiple of the edge that no float holds is rounded to one, which must not pass the bounds.
         if (alignToOrigin) {
             const double face = std::floor(double(bounds.low[i]) / double(edge)) * double(edge);
-            origin[i] = static_cast<float>(face);
-            if (origin[i] > bounds.low[i]) origin[i] = roundedDown(face);
+            origin[i] = std::min(static_cast<float>(face), bounds.low[i]);
         }
         const double cells = std::ceil((double(bounds.high[i]) - double(origin[i])) / double(edge));
         if (!(cells <= kMostCells)) {

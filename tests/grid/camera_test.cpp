@@ -98,6 +98,10 @@ TEST(CameraGrid, Refuses) {
     both([&](auto& g) { g.farDepth = kInf; });
     both([](auto& g) { g.up = g.forward; });
     both([](auto& g) { g.up = -2.0f * g.forward; });
+    both([](auto& g) {
+        g.forward = {1, 2, 3};
+        g.up = {2, 4, 6.000001f};  // parallel but for a rounding
+    });
     both([](auto& g) { g.forward = Float3(0.0f); });
     both([&](auto& g) { g.up.x = kNan; });
     both([&](auto& g) { g.forward.y = kInf; });
