@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <span>
 
-namespace vitrail::detail {
+namespace vitrail::inline v0::detail {
 
 struct KernelFile {
     const char* name;  // "voxelize/points.cl", "layout/grid.h"
@@ -13,4 +13,4 @@ struct KernelFile {
 
 std::span<const KernelFile> kernelTable();
 
-}  // namespace vitrail::detail
+}  // namespace vitrail::v0::detail

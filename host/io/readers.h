@@ -16,11 +16,12 @@ struct Source {
     std::span<const std::byte> bytes;
     std::string name;               // for messages: the file as the user wrote it
     std::filesystem::path folder;   // where relative references are looked up; empty: nowhere
+    bool meshOnly = false;          // materials and textures are not wanted: none need be looked up or decoded
 };
 
-Scene readPly(const Source& source);   // ply_stl_off.cpp: OpenMesh
-Scene readStl(const Source& source);
-Scene readOff(const Source& source);
+Scene readPly(const Source& source);   // ply.cpp
+Scene readStl(const Source& source);   // stl.cpp
+Scene readOff(const Source& source);   // off.cpp
 Scene readObj(const Source& source);   // obj.cpp: tinyobjloader
 Scene readGltf(const Source& source);  // gltf.cpp: tinygltf; .gltf and .glb told apart by their first bytes
 Scene readJsonScene(const Source& source);  // json_scene.cpp

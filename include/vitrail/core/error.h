@@ -24,10 +24,10 @@ const char* name(ErrorCode code);
 
 /// Parts of a message. Empty parts are left out.
 struct ErrorText {
-    std::string what;    ///< "conservative: a grid of ... needs 8.00 GiB of bits; this device allows 2.00 GiB in one buffer"
-    std::string where;   ///< "device: pthread-skylake (PoCL 3.1)", "bunny.obj:17"
-    std::string during;  ///< "voxelizing 69451 triangles"
-    std::string remedy;  ///< "2580 voxels along the longest axis or fewer"
+    std::string what{};    ///< "conservative: a grid of ... needs 8.00 GiB of bits; this device allows 2.00 GiB in one buffer"
+    std::string where{};   ///< "device: pthread-skylake (PoCL 3.1)", "bunny.obj:17"
+    std::string during{};  ///< "voxelizing 69451 triangles"
+    std::string remedy{};  ///< "2580 voxels along the longest axis or fewer"
 };
 
 class Error : public std::runtime_error {

@@ -39,6 +39,7 @@ public:
     Workspace& workspace();
     DeviceInfo deviceInfo() const;
     Counters counters() const;  ///< of the device
+    std::uint64_t memoryLimit() const;  ///< of the device
 
     void setPrecision(Precision precision);
     Precision precision() const;  ///< single also where the device has no doubles

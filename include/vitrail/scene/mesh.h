@@ -48,18 +48,22 @@ struct MeshView {
     Bounds bounds() const;  ///< of all vertices
 };
 
-/// What a mesh is; numbers, not errors. Counted on vertices merged at bit-equal positions.
+/// What a mesh is; numbers, not errors. Counted on vertices merged at bit-equal positions (-0 equals +0). Triangles that use a
+/// vertex twice have no edges to count.
 struct MeshReport {
-    std::uint64_t vertices = 0, triangles = 0;
+    std::uint64_t vertices = 0;          ///< different positions, used by triangles or not
+    std::uint64_t triangles = 0;
     std::uint64_t openEdges = 0;         ///< edges of one triangle
     std::uint64_t nonManifoldEdges = 0;  ///< edges of three or more triangles
     std::uint64_t flippedEdges = 0;      ///< edges whose two triangles run them in the same direction
-    std::uint64_t degenerateTriangles = 0;  ///< of zero area, in double arithmetic
-    std::uint64_t duplicatedTriangles = 0;  ///< same three vertices as an earlier one
+    std::uint64_t degenerateTriangles = 0;  ///< of zero area in double arithmetic, or with a vertex missing or not finite
+    std::uint64_t duplicatedTriangles = 0;  ///< same three different vertices as an earlier one, in any order
     std::uint64_t components = 0;        ///< connected through shared vertices
     double signedVolume = 0;             ///< by the divergence theorem; negative: inverted winding; meaningless if open
 
-    bool closed() const { return triangles != 0 && openEdges == 0 && nonManifoldEdges == 0 && flippedEdges == 0; }
+    bool closed() const {
+        return triangles > degenerateTriangles && openEdges == 0 && nonManifoldEdges == 0 && flippedEdges == 0;
+    }
     bool inverted() const { return closed() && signedVolume < 0; }
     /// One line for people: "open (223 edges), 5 components".
     std::string summary() const;
@@ -76,7 +80,7 @@ struct Mesh {
     std::vector<Float4> colours;             ///< linear RGBA, one a vertex, or empty
     std::vector<std::string> repairs;        ///< what a reader had to mend or leave out, one sentence each
 
-    std::size_t triangleCount() const { return indices.size() / 3; }
+    std::size_t triangleCount() const { return view().triangleCount(); }
     Bounds bounds() const { return view().bounds(); }
     MeshView view() const;
     operator MeshView() const { return view(); }
@@ -94,7 +98,7 @@ MeshReport inspect(const MeshView& mesh);
 
 /// Angle-weighted vertex normals (Thuermer & Wuethrich 1998) of vertices merged at bit-equal positions; edges whose faces
 /// meet at more than `creaseDegrees` (0 to 180) keep a crease, for which vertices are split in the result.
-/// Normals that the mesh already has are replaced.
+/// Normals that the mesh already has are replaced. Throws Error as `check` does, and (badOption) for an angle outside 0 to 180.
 Mesh withSmoothNormals(const MeshView& mesh, float creaseDegrees = 180.0f);
 
 /// Triangles on the device, uploaded once and used by many calls.

@@ -1,0 +1,1126 @@
+// io/gltf.cpp: glTF 2.0, text and binary, as one mesh in world space with its materials. tinygltf turns the JSON into its typed
+// model; bytes are ours: it would decode every picture, look for files outside the folder, and refuse a buffer longer than stated.
+// Skins stand in the pose of the node hierarchy, morph targets at their default weights; animations and tangents are not read.
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include <glm/gtc/quaternion.hpp>
+#include <tiny_gltf.h>
+
+#include <vitrail/core/error.h>
+#include <vitrail/io/image.h>
+
+#include "io/json_text.h"
+#include "io/readers.h"
+#include "io/transform.h"
+
+namespace vitrail::io_detail {
+
+namespace {
+
+using Json = nlohmann::json;
+using Bytes = std::span<const std::byte>;
+
+constexpr const char* kRead[] = {"KHR_mesh_quantization",   "KHR_texture_transform",  "KHR_materials_transmission",
+                                 "KHR_materials_ior",       "KHR_materials_volume",   "KHR_materials_emissive_strength",
+                                 "KHR_lights_punctual",     "EXT_texture_webp"};
+// A Mesh counts its vertices and triangles in 32 bits.
+constexpr std::size_t kMostCounted = 0xffffffffu;
+// Elements that an accessor without bytes of its own may claim, whatever the size of the file.
+constexpr std::size_t kFreeElements = 65536;
+
+std::uint32_t readU32(Bytes bytes, std::size_t at) {
+    std::uint32_t value;
+    std::memcpy(&value, bytes.data() + at, 4);
+    return value;
+}
+
+std::string inQuotes(const std::string& text) { return "\"" + text + "\""; }
+
+std::string at(const char* list, std::size_t index) { return std::string(list) + "[" + std::to_string(index) + "]"; }
+
+// "%20" and its like; left alone where the two digits are missing.
+std::string percentDecoded(const std::string& uri) {
+    std::string text;
+    for (std::size_t i = 0; i < uri.size(); ++i) {
+        const auto digit = [&](std::size_t k) {
+            return k < uri.size() && std::isxdigit(static_cast<unsigned char>(uri[k])) ? std::stoi(uri.substr(k, 1), nullptr, 16) : -1;
+        };
+        if (uri[i] == '%' && digit(i + 1) >= 0 && digit(i + 2) >= 0) {
+            text.push_back(static_cast<char>(digit(i + 1) * 16 + digit(i + 2)));
+            i += 2;
+        } else {
+            text.push_back(uri[i]);
+        }
+    }
+    return text;
+}
+
+bool noImage(tinygltf::Image*, const int, std::string*, std::string*, int, int, const unsigned char*, int, void*) { return true; }
+
+/// One attribute, as floats.
+struct Attribute {
+    std::size_t count = 0;
+    int width = 0;  // components of an element
+    std::vector<float> values;
+
+    bool empty() const { return count == 0; }
+    Float2 float2(std::size_t i) const { return {values[i * width], values[i * width + 1]}; }
+    Float3 float3(std::size_t i) const { return {values[i * width], values[i * width + 1], values[i * width + 2]}; }
+};
+
+/// A primitive where a node places it.
+struct Placed {
+    std::size_t node, mesh, primitive;
+};
+
+class GltfReader {
+public:
+    explicit GltfReader(const Source& source) : source_(source) {}
+
+    Scene read() {
+        parse();
+        checkExtensions();
+        placeNodes();
+        std::vector<Placed> placed = chooseScene();
+        readMaterials();
+        assemble(placed);
+        readTextures();
+        scene_.name = std::filesystem::path(source_.name).stem().string();
+        scene_.mesh.name = scene_.name;
+        for (const std::string& repair : scene_.mesh.repairs) warn(repair);
+        return std::move(scene_);
+    }
+
+private:
+    [[noreturn]] void fail(const std::string& what, const std::string& place = {}, const std::string& remedy = {},
+                           ErrorCode code = ErrorCode::badFile) const {
+        throw Error(code, {"gltf: " + what, place.empty() ? source_.name : source_.name + ", " + place, "", remedy});
+    }
+
+    // Each sentence once.
+    void warn(const std::string& sentence) {
+        if (std::find(scene_.warnings.begin(), scene_.warnings.end(), sentence) == scene_.warnings.end()) {
+            scene_.warnings.push_back(sentence);
+        }
+    }
+
+    // ---- container and JSON ----
+
+    void parse() {
+        std::string_view text(reinterpret_cast<const char*>(source_.bytes.data()), source_.bytes.size());
+        if (text.starts_with("glTF")) text = openBinary();
+        document_ = parseJson(text, source_.name);
+        if (!document_.is_object()) fail("the JSON is no object", "", "a .gltf or .glb file of version 2.0");
+        const std::string version = versionOf("version"), least = versionOf("minVersion");
+        if (version.empty()) fail("no asset.version", "asset", "a .gltf or .glb file of version 2.0");
+        if (!version.starts_with("2.") || (!least.empty() && least != "2.0")) {
+            fail("version " + (least.empty() ? version : least) + " is not read", "asset", "an export as glTF 2.0", ErrorCode::unsupported);
+        }
+        takeList("buffers", buffers_);
+        takeList("images", images_);
+        loaded_.resize(buffers_.size());
+        // Nothing below looks at these; pictures and buffers would be opened by tinygltf.
+        for (const char* unread : {"animations", "extras"}) document_.erase(unread);
+
+        const std::string rest = document_.dump();
+        if (rest.size() > 0xffffffffu) fail("more than 4 GiB of JSON", "", "buffers in files of their own");
+        tinygltf::TinyGLTF parser;
+        parser.SetImageLoader(noImage, nullptr);
+        std::string errors, warnings;
+        bool good = false;
+        try {
+            good = parser.LoadASCIIFromString(&model_, &errors, &warnings, rest.c_str(), static_cast<unsigned>(rest.size()), "");
+        } catch (const std::exception& error) {
+            errors += error.what();
+        }
+        std::vector<std::string> lines;
+        for (std::size_t start = 0; start < errors.size();) {
+            const std::size_t end = std::min(errors.find('\n', start), errors.size());
+            const std::string line = errors.substr(start, end - start);
+            // Optional in glTF, which tinygltf 2.7 does not know.
+            if (!line.empty() && line.find("inverseBindMatrices") == std::string::npos) lines.push_back(line);
+            start = end + 1;
+        }
+        if (!good) fail(lines.empty() ? "not a glTF document" : lines.front(), "", "a check with the Khronos glTF validator");
+        for (const std::string& line : lines) warn(line);
+    }
+
+    std::string_view openBinary() {
+        const Bytes all = source_.bytes;
+        if (all.size() < 20) fail("the header ends at byte " + std::to_string(all.size()) + " of 20", "", "the whole file");
+        if (const std::uint32_t version = readU32(all, 4); version != 2) {
+            fail("a binary file of version " + std::to_string(version) + " is not read", "", "an export as glTF 2.0",
+                 ErrorCode::unsupported);
+        }
+        const std::size_t length = readU32(all, 8);
+        if (length > all.size() || length < 20) {
+            fail("the file has " + std::to_string(all.size()) + " bytes where its header says " + std::to_string(length), "",
+                 "the whole file");
+        }
+        std::string_view text;
+        for (std::size_t start = 12; start + 8 <= length;) {
+            const std::size_t size = readU32(all, start);
+            const std::uint32_t kind = readU32(all, start + 4);
+            if (size > length - start - 8) {
+                fail("a chunk of " + std::to_string(size) + " bytes runs past the end", "byte " + std::to_string(start), "the whole file");
+            }
+            const Bytes chunk = all.subspan(start + 8, size);
+            if (start == 12) {
+                if (kind != 0x4e4f534au) fail("the first chunk is not JSON", "byte 12");
+                text = {reinterpret_cast<const char*>(chunk.data()), chunk.size()};
+            } else if (kind == 0x004e4942u && !binary_) {
+                binary_ = chunk;
+            }
+            start += 8 + size;
+        }
+        if (text.empty()) fail("no JSON chunk", "byte 12");
+        return text;
+    }
+
+    std::string versionOf(const char* key) const {
+        const auto asset = document_.find("asset");
+        if (asset == document_.end() || !asset->is_object()) return {};
+        const auto value = asset->find(key);
+        return value != asset->end() && value->is_string() ? value->get<std::string>() : std::string();
+    }
+
+    void takeList(const char* key, Json& list) {
+        list = Json::array();
+        const auto found = document_.find(key);
+        if (found == document_.end()) return;
+        if (!found->is_array()) fail("a list was expected", key);
+        list = std::move(*found);
+        document_.erase(key);
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            if (!list[i].is_object()) fail("an object was expected", at(key, i));
+        }
+    }
+
+    void checkExtensions() {
+        const auto known = [](const std::string& name) {
+            return std::any_of(std::begin(kRead), std::end(kRead), [&](const char* one) { return name == one; });
+        };
+        for (const std::string& name : model_.extensionsRequired) {
+            if (!known(name)) {
+                fail("the required extension " + name + " is not read", "extensionsRequired",
+                     "an export without it (for compressed meshes: gltf-transform or gltfpack can unpack)", ErrorCode::unsupported);
+            }
+        }
+        for (const std::string& name : model_.extensionsUsed) {
+            if (!known(name)) warn("the extension " + name + " is not read");
+        }
+    }
+
+    // ---- bytes ----
+
+    // A file that the document names, only below its own folder.
+    std::vector<std::byte> readBeside(const std::string& uri, const std::string& place) const {
+        const std::filesystem::path path(percentDecoded(uri));
+        bool outside = path.empty() || path.is_absolute() || uri.find("://") != std::string::npos;
+        for (const auto& part : path) outside = outside || part == "..";
+        if (outside || path.native().find('\0') != std::string::npos) {
+            fail("the reference " + inQuotes(uri) + " leads out of the file's folder", place, "a file beside it, or a data URI");
+        }
+        if (source_.folder.empty()) {
+            fail("the file " + inQuotes(uri) + " is needed, and there is no folder to look in", place, "a .glb, or data URIs");
+        }
+        return readFile(source_.folder / path);
+    }
+
+    Bytes bufferBytes(int index) {
+        if (index < 0 || static_cast<std::size_t>(index) >= buffers_.size()) {
+            fail("there is no buffer " + std::to_string(index), "bufferViews");
+        }
+        const std::string place = at("buffers", static_cast<std::size_t>(index));
+        const Json& buffer = buffers_[static_cast<std::size_t>(index)];
+        const auto stated = buffer.find("byteLength");
+        if (stated == buffer.end() || !stated->is_number_unsigned()) fail("byteLength is missing or no positive number", place);
+        const std::uint64_t length = stated->get<std::uint64_t>();
+
+        Bytes bytes;
+        const auto uri = buffer.find("uri");
+        if (uri == buffer.end()) {
+            if (index != 0 || !binary_) fail("it has neither uri nor binary chunk", place);
+            bytes = *binary_;
+        } else if (!uri->is_string()) {
+            fail("uri is no text", place);
+        } else {
+            auto& held = loaded_[static_cast<std::size_t>(index)];
+            if (!held) held = bytesOfUri(uri->get_ref<const std::string&>(), place);
+            bytes = *held;
+        }
+        if (length > bytes.size()) {
+            fail("byteLength is " + std::to_string(length) + ", but there are " + std::to_string(bytes.size()) + " bytes", place,
+                 "the whole file");
+        }
+        return bytes.first(static_cast<std::size_t>(length));
+    }
+
+    std::vector<std::byte> bytesOfUri(const std::string& uri, const std::string& place) const {
+        if (!uri.starts_with("data:")) return readBeside(uri, place);
+        std::string mimeType, text;
+        if (!decodeDataUri(uri, mimeType, text)) fail("the data URI is not base64", place);
+        const Bytes bytes = std::as_bytes(std::span(text));
+        return {bytes.begin(), bytes.end()};
+    }
+
+    Bytes viewBytes(int index, const std::string& place) {
+        if (index < 0 || static_cast<std::size_t>(index) >= model_.bufferViews.size()) {
+            fail("there is no buffer view " + std::to_string(index), place);
+        }
+        const tinygltf::BufferView& view = model_.bufferViews[static_cast<std::size_t>(index)];
+        const Bytes bytes = bufferBytes(view.buffer);
+        if (view.byteOffset > bytes.size() || view.byteLength > bytes.size() - view.byteOffset) {
+            fail("bytes " + std::to_string(view.byteOffset) + " to " + std::to_string(view.byteOffset) + " + " +
+                     std::to_string(view.byteLength) + " lie past the end of a buffer of " + std::to_string(bytes.size()),
+                 at("bufferViews", static_cast<std::size_t>(index)));
+        }
+        return bytes.subspan(view.byteOffset, view.byteLength);
+    }
+
+    // ---- accessors ----
+
+    const tinygltf::Accessor& accessor(int index, const std::string& place) const {
+        if (index < 0 || static_cast<std::size_t>(index) >= model_.accessors.size()) {
+            fail("there is no accessor " + std::to_string(index), place);
+        }
+        return model_.accessors[static_cast<std::size_t>(index)];
+    }
+
+    static double component(const std::byte* from, int type, bool normalized) {
+        const auto as = [&](auto value) {
+            std::memcpy(&value, from, sizeof(value));
+            return value;
+        };
+        switch (type) {
+            case TINYGLTF_COMPONENT_TYPE_BYTE:
+                return normalized ? std::max(as(std::int8_t{}) / 127.0, -1.0) : as(std::int8_t{});
+            case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+                return normalized ? as(std::uint8_t{}) / 255.0 : as(std::uint8_t{});
+            case TINYGLTF_COMPONENT_TYPE_SHORT:
+                return normalized ? std::max(as(std::int16_t{}) / 32767.0, -1.0) : as(std::int16_t{});
+            case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+                return normalized ? as(std::uint16_t{}) / 65535.0 : as(std::uint16_t{});
+            case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+                return as(std::uint32_t{});
+            default:
+                return as(float{});
+        }
+    }
+
+    // Calls store(element, component, value) for every number of the accessor, sparse ones over the others.
+    template <class F>
+    std::size_t forEachNumber(int index, const std::string& user, F&& store) {
+        const tinygltf::Accessor& a = accessor(index, user);
+        const std::string place = at("accessors", static_cast<std::size_t>(index));
+        const int size = tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(a.componentType));
+        const int width = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(a.type));
+        if (size <= 0 || size > 4 || width <= 0 || a.componentType == TINYGLTF_COMPONENT_TYPE_INT) {
+            fail("componentType " + std::to_string(a.componentType) + " is none of glTF 2.0", place);
+        }
+        const auto element = static_cast<std::size_t>(size * width);
+        const auto run = [&](Bytes bytes, std::size_t offset, std::size_t stride, std::size_t count, auto&& target,
+                             const char* what) {
+            if (stride < element) fail("byteStride " + std::to_string(stride) + " is shorter than an element", place);
+            // Every element takes a byte at least, which keeps the product below from overflowing.
+            if (count > bytes.size() || offset > bytes.size() ||
+                (count != 0 && (count - 1) * stride + element > bytes.size() - offset)) {
+                fail(std::to_string(count) + what + " of " + std::to_string(element) + " bytes from byte " + std::to_string(offset) +
+                         " do not fit the buffer view of " + std::to_string(bytes.size()) + " bytes",
+                     place, "the whole file, or a check with the Khronos glTF validator");
+            }
+            for (std::size_t i = 0; i < count; ++i) {
+                const std::size_t to = target(i);
+                for (int c = 0; c < width; ++c) {
+                    store(to, c, component(bytes.data() + offset + i * stride + static_cast<std::size_t>(c * size), a.componentType,
+                                           a.normalized));
+                }
+            }
+        };
+        if (a.bufferView >= 0) {
+            const Bytes bytes = viewBytes(a.bufferView, place);
+            const std::size_t stride = model_.bufferViews[static_cast<std::size_t>(a.bufferView)].byteStride;
+            run(bytes, a.byteOffset, stride == 0 ? element : stride, a.count, [](std::size_t i) { return i; }, " elements");
+        } else if (!a.sparse.isSparse) {
+            fail("it has no buffer view", place);
+        }
+        if (a.sparse.isSparse) {
+            const int type = a.sparse.indices.componentType;
+            if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
+                type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
+                fail("sparse indices of componentType " + std::to_string(type), place);
+            }
+            const Bytes indices = viewBytes(a.sparse.indices.bufferView, place);
+            const auto indexSize = static_cast<std::size_t>(tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(type)));
+            const auto count = static_cast<std::size_t>(std::max(a.sparse.count, 0));
+            const auto offset = static_cast<std::size_t>(a.sparse.indices.byteOffset);
+            if (a.sparse.indices.byteOffset < 0 || a.sparse.values.byteOffset < 0 || count > a.count || offset > indices.size() ||
+                count > (indices.size() - offset) / indexSize) {
+                fail(std::to_string(a.sparse.count) + " sparse indices do not fit their buffer view or accessor", place);
+            }
+            run(
+                viewBytes(a.sparse.values.bufferView, place), static_cast<std::size_t>(a.sparse.values.byteOffset), element, count,
+                [&](std::size_t i) {
+                    const auto to = static_cast<std::size_t>(component(indices.data() + offset + i * indexSize, type, false));
+                    if (to >= a.count) fail("sparse index " + std::to_string(to) + " of " + std::to_string(a.count), place);
+                    return to;
+                },
+                " sparse values");
+        }
+        return a.count;
+    }
+
+    // `widths`: how many components are fine, e.g. {3, 4}.
+    Attribute attribute(int index, const std::string& user, std::initializer_list<int> widths) {
+        const tinygltf::Accessor& a = accessor(index, user);
+        const std::string place = at("accessors", static_cast<std::size_t>(index));
+        Attribute result;
+        result.width = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(a.type));
+        if (std::find(widths.begin(), widths.end(), result.width) == widths.end()) {
+            fail(std::to_string(result.width) + " components where " + user + " takes " + std::to_string(*widths.begin()), place);
+        }
+        result.count = checkedCount(a, place);
+        result.values.assign(result.count * static_cast<std::size_t>(result.width), 0.0f);
+        forEachNumber(index, user, [&](std::size_t i, int c, double value) {
+            result.values[i * static_cast<std::size_t>(result.width) + static_cast<std::size_t>(c)] = static_cast<float>(value);
+        });
+        return result;
+    }
+
+    std::vector<std::uint32_t> indices(int index, const std::string& user) {
+        const tinygltf::Accessor& a = accessor(index, user);
+        const std::string place = at("accessors", static_cast<std::size_t>(index));
+        if (a.type != TINYGLTF_TYPE_SCALAR || a.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT) {
+            fail("indices must be unsigned whole numbers", place);
+        }
+        std::vector<std::uint32_t> result(checkedCount(a, place), 0);
+        forEachNumber(index, user, [&](std::size_t i, int, double value) {
+            result[i] = value < 0 ? 0xffffffffu : static_cast<std::uint32_t>(value);
+        });
+        return result;
+    }
+
+    // The bytes must be able to hold what the count claims, before memory is taken for it.
+    std::size_t checkedCount(const tinygltf::Accessor& a, const std::string& place) {
+        std::size_t most = kFreeElements;
+        if (a.bufferView >= 0) {
+            most = viewBytes(a.bufferView, place).size();
+        } else {
+            most = std::max(most, source_.bytes.size());
+        }
+        if (a.count == 0 || a.count > most) {
+            fail(std::to_string(a.count) + " elements where the bytes can hold 1 to " + std::to_string(most), place,
+                 "the whole file, or a check with the Khronos glTF validator");
+        }
+        return a.count;
+    }
+
+    // ---- nodes ----
+
+    void placeNodes() {
+        const std::size_t count = model_.nodes.size();
+        std::vector<int> parent(count, -1);
+        for (std::size_t n = 0; n < count; ++n) {
+            for (int child : model_.nodes[n].children) {
+                if (child < 0 || static_cast<std::size_t>(child) >= count) {
+                    fail("there is no node " + std::to_string(child), at("nodes", n) + ".children");
+                }
+                int& known = parent[static_cast<std::size_t>(child)];
+                if (known >= 0 && known != static_cast<int>(n)) {
+                    checkCycles();
+                    fail("it is the child of the nodes " + std::to_string(known) + " and " + std::to_string(n),
+                         at("nodes", static_cast<std::size_t>(child)), "a copy of the node for each parent");
+                }
+                known = static_cast<int>(n);
+            }
+        }
+        const std::vector<std::size_t> order = checkCycles();
+        world_.resize(count);
+        for (std::size_t n : order) {
+            const glm::dmat4 local = localTransform(n);
+            world_[n] = parent[n] < 0 ? local : world_[static_cast<std::size_t>(parent[n])] * local;
+        }
+    }
+
+    // Depth first without recursion; a node met on its own path is a cycle. Returns parents before their children.
+    std::vector<std::size_t> checkCycles() const {
+        const std::size_t count = model_.nodes.size();
+        std::vector<char> state(count, 0);  // 1 on the path, 2 done
+        std::vector<std::size_t> finished;
+        std::vector<std::pair<std::size_t, std::size_t>> path;
+        for (std::size_t root = 0; root < count; ++root) {
+            if (state[root] != 0) continue;
+            state[root] = 1;
+            path.emplace_back(root, 0);
+            while (!path.empty()) {
+                const std::size_t node = path.back().first;
+                const std::vector<int>& children = model_.nodes[node].children;
+                if (path.back().second == children.size()) {
+                    state[node] = 2;
+                    finished.push_back(node);
+                    path.pop_back();
+                    continue;
+                }
+                const auto child = static_cast<std::size_t>(children[path.back().second++]);
+                if (child >= count) continue;  // reported by placeNodes
+                if (state[child] == 1) {
+                    fail("node cycle: node " + std::to_string(child) + " is its own ancestor", at("nodes", node) + ".children",
+                         "a hierarchy without cycles");
+                }
+                if (state[child] == 0) {
+                    state[child] = 1;
+                    path.emplace_back(child, 0);
+                }
+            }
+        }
+        std::reverse(finished.begin(), finished.end());
+        return finished;
+    }
+
+    glm::dmat4 localTransform(std::size_t n) const {
+        const tinygltf::Node& node = model_.nodes[n];
+        const auto expect = [&](const std::vector<double>& values, std::size_t size, const char* what) {
+            if (!values.empty() && values.size() != size) {
+                fail(std::string(what) + " has " + std::to_string(values.size()) + " numbers instead of " + std::to_string(size),
+                     at("nodes", n));
+            }
+            return !values.empty();
+        };
+        if (expect(node.matrix, 16, "matrix")) {
+            glm::dmat4 m;
+            for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
+            return m;
+        }
+        glm::dmat4 m(1.0);
+        if (expect(node.rotation, 4, "rotation")) {
+            const glm::dquat q(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
+            const double length = glm::length(q);
+            if (!(length > 1e-12) || !std::isfinite(length)) fail("rotation is no quaternion", at("nodes", n));
+            m = glm::mat4_cast(q / length);
+        }
+        if (expect(node.scale, 3, "scale")) {
+            for (int c = 0; c < 3; ++c) m[c] *= node.scale[static_cast<std::size_t>(c)];
+        }
+        if (expect(node.translation, 3, "translation")) {
+            m[3] = glm::dvec4(node.translation[0], node.translation[1], node.translation[2], 1.0);
+        }
+        return m;
+    }
+
+    // The primitives that the scene shows, in the order of its nodes.
+    std::vector<Placed> chooseScene() {
+        std::vector<int> roots;
+        if (!model_.scenes.empty()) {
+            const int chosen = std::max(model_.defaultScene, 0);
+            if (static_cast<std::size_t>(chosen) >= model_.scenes.size()) fail("there is no scene " + std::to_string(chosen), "scene");
+            roots = model_.scenes[static_cast<std::size_t>(chosen)].nodes;
+            if (model_.scenes.size() > 1) {
+                warn("of " + std::to_string(model_.scenes.size()) + " scenes only number " + std::to_string(chosen) + " was read");
+            }
+        } else {
+            std::vector<char> isChild(model_.nodes.size(), 0);
+            for (const auto& node : model_.nodes) {
+                for (int child : node.children) isChild[static_cast<std::size_t>(child)] = 1;
+            }
+            for (std::size_t n = 0; n < isChild.size(); ++n) {
+                if (!isChild[n]) roots.push_back(static_cast<int>(n));
+            }
+        }
+        std::vector<char> visited(model_.nodes.size(), 0);
+        std::vector<int> waiting(roots.rbegin(), roots.rend());
+        std::vector<Placed> placed;
+        while (!waiting.empty()) {
+            const int top = waiting.back();
+            waiting.pop_back();
+            if (top < 0 || static_cast<std::size_t>(top) >= model_.nodes.size()) {
+                fail("there is no node " + std::to_string(top), "scenes");
+            }
+            const auto n = static_cast<std::size_t>(top);
+            if (visited[n]) continue;
+            visited[n] = 1;
+            placeNode(n, placed);
+            const std::vector<int>& children = model_.nodes[n].children;
+            waiting.insert(waiting.end(), children.rbegin(), children.rend());
+        }
+        return placed;
+    }
+
+    void placeNode(std::size_t n, std::vector<Placed>& placed) {
+        const tinygltf::Node& node = model_.nodes[n];
+        if (node.camera >= 0 && !cameraNode_) {
+            if (static_cast<std::size_t>(node.camera) >= model_.cameras.size()) {
+                fail("there is no camera " + std::to_string(node.camera), at("nodes", n));
+            }
+            cameraNode_ = n;
+        }
+        if (const auto light = node.extensions.find("KHR_lights_punctual"); light != node.extensions.end()) readLight(n, light->second);
+        if (node.extensions.count("EXT_mesh_gpu_instancing") != 0) warn("node " + std::to_string(n) + ": its GPU instances are left out");
+        if (node.mesh < 0) return;
+        if (static_cast<std::size_t>(node.mesh) >= model_.meshes.size()) {
+            fail("there is no mesh " + std::to_string(node.mesh), at("nodes", n));
+        }
+        if (node.skin >= 0 && static_cast<std::size_t>(node.skin) >= model_.skins.size()) {
+            fail("there is no skin " + std::to_string(node.skin), at("nodes", n));
+        }
+        const auto m = static_cast<std::size_t>(node.mesh);
+        for (std::size_t p = 0; p < model_.meshes[m].primitives.size(); ++p) {
+            const tinygltf::Primitive& primitive = model_.meshes[m].primitives[p];
+            const std::string place = primitivePlace({n, m, p});
+            if (primitive.mode < 0 || primitive.mode > 6) fail("mode " + std::to_string(primitive.mode) + " is none of 0 to 6", place);
+            if (primitive.mode < TINYGLTF_MODE_TRIANGLES) {
+                warn(place + ": points and lines are left out");
+            } else if (primitive.attributes.count("POSITION") == 0) {
+                warn(place + ": it has no positions and is left out");
+            } else {
+                placed.push_back({n, m, p});
+            }
+        }
+    }
+
+    static std::string primitivePlace(const Placed& one) {
+        return at("meshes", one.mesh) + "." + at("primitives", one.primitive);
+    }
+
+    void readLight(std::size_t n, const tinygltf::Value& extension) {
+        const tinygltf::Value* index = extension.Has("light") ? &extension.Get("light") : nullptr;
+        const int i = index != nullptr && index->IsInt() ? index->GetNumberAsInt() : -1;
+        if (i < 0 || static_cast<std::size_t>(i) >= model_.lights.size()) fail("there is no light " + std::to_string(i), at("nodes", n));
+        const tinygltf::Light& light = model_.lights[static_cast<std::size_t>(i)];
+        if (light.type != "directional" || lightRead_) {
+            warn("node " + std::to_string(n) + ": the " + light.type + " light is left out" +
+                 (light.type == "directional" ? ", another one came first" : ", only a directional one is read"));
+            return;
+        }
+        const Float3 direction(unitOrZero(glm::dvec3(world_[n][2])));  // it shines along the node's -z
+        if (direction == Float3(0.0f) || !(light.intensity >= 0) || light.intensity > 1e30) {
+            warn("node " + std::to_string(n) + ": a light without direction or intensity is left out");
+            return;
+        }
+        scene_.light.toLight = direction;
+        scene_.light.radiance = Float3(static_cast<float>(light.intensity));
+        if (light.color.size() == 3) {
+            for (int c = 0; c < 3; ++c) {
+                scene_.light.radiance[c] *= static_cast<float>(std::clamp(light.color[static_cast<std::size_t>(c)], 0.0, 1e30));
+            }
+        }
+        lightRead_ = true;
+    }
+
+    void readCamera(std::size_t n, const Bounds& bounds) {
+        const tinygltf::Camera& from = model_.cameras[static_cast<std::size_t>(model_.nodes[n].camera)];
+        const glm::dmat4& world = world_[n];
+        Camera camera;
+        camera.eye = Float3(glm::dvec3(world[3]));
+        const Float3 forward = unitOrZero(-glm::dvec3(world[2])), up = unitOrZero(glm::dvec3(world[1]));
+        double aspect = 1.0;
+        bool good = finite(camera.eye) && forward != Float3(0.0f) && up != Float3(0.0f) && std::abs(glm::dot(forward, up)) < 0.999f;
+        if (from.type == "orthographic") {
+            camera.orthographicHeight = static_cast<float>(2.0 * std::abs(from.orthographic.ymag));
+            aspect = std::abs(from.orthographic.xmag / from.orthographic.ymag);
+            good = good && camera.orthographicHeight > 0 && std::isfinite(camera.orthographicHeight);
+        } else {
+            camera.fieldOfViewDegrees = static_cast<float>(glm::degrees(from.perspective.yfov));
+            if (from.perspective.aspectRatio > 0) aspect = from.perspective.aspectRatio;
+            good = good && camera.fieldOfViewDegrees >= 1.0f && camera.fieldOfViewDegrees <= 170.0f;
+        }
+        if (!good || !(aspect > 1.0 / 32 && aspect < 32.0)) {
+            warn("node " + std::to_string(n) + ": its camera has no usable direction, angle or aspect and is left out");
+            return;
+        }
+        // glTF names a direction only: look at the point on it that is nearest to the middle of the scene.
+        const Float3 middle = bounds.low + (bounds.high - bounds.low) * 0.5f;
+        const float distance = glm::dot(middle - camera.eye, forward);
+        camera.target = camera.eye + forward * (distance > 1e-3f && std::isfinite(distance) ? distance : 1.0f);
+        camera.up = up;
+        camera.width = static_cast<std::uint32_t>(std::lround(camera.height * aspect));
+        scene_.camera = camera;
+    }
+
+    // ---- materials ----
+
+    double number(const tinygltf::ExtensionMap& extensions, const char* extension, const char* key, double otherwise) const {
+        const auto found = extensions.find(extension);
+        if (found == extensions.end() || !found->second.Has(key)) return otherwise;
+        const tinygltf::Value& value = found->second.Get(key);
+        return value.IsNumber() ? value.GetNumberAsDouble() : otherwise;
+    }
+
+    static bool hasMember(const tinygltf::ExtensionMap& extensions, const char* extension, const char* key) {
+        const auto found = extensions.find(extension);
+        return found != extensions.end() && found->second.Has(key);
+    }
+
+    float inRange(double value, double least, double most, const std::string& material, const char* what) {
+        if (value >= least && value <= most) return static_cast<float>(value);
+        const double nearest = value > most ? most : least;
+        warn("material " + material + ": " + what + " " + std::to_string(value) + " was moved to " + std::to_string(nearest));
+        return static_cast<float>(nearest);
+    }
+
+    void readMaterials() {
+        for (std::size_t i = 0; i < model_.materials.size(); ++i) scene_.materials.push_back(material(i));
+        baseTextures_.assign(scene_.materials.size(), -1);
+        texcoordSets_.assign(scene_.materials.size(), 0);
+        for (std::size_t i = 0; i < model_.materials.size(); ++i) readBaseTexture(i);
+    }
+
+    Material material(std::size_t index) {
+        const tinygltf::Material& from = model_.materials[index];
+        const std::string called = from.name.empty() ? std::to_string(index) : inQuotes(from.name);
+        const tinygltf::ExtensionMap& extensions = from.extensions;
+        Material m;
+        m.name = from.name;
+        const auto& pbr = from.pbrMetallicRoughness;
+        if (pbr.baseColorFactor.size() == 4) {
+            for (int c = 0; c < 3; ++c) {
+                m.baseColour[c] = inRange(pbr.baseColorFactor[static_cast<std::size_t>(c)], 0, 1, called, "baseColorFactor");
+            }
+            m.alpha = inRange(pbr.baseColorFactor[3], 0, 1, called, "alpha");
+        } else {
+            m.baseColour = Float3(1.0f);
+        }
+        m.roughness = inRange(pbr.roughnessFactor, 0, 1, called, "roughnessFactor");
+        if (from.alphaMode == "MASK") {
+            m.alphaMode = AlphaMode::mask;
+        } else if (from.alphaMode == "BLEND") {
+            m.alphaMode = AlphaMode::blend;
+        } else if (!from.alphaMode.empty() && from.alphaMode != "OPAQUE") {
+            warn("material " + called + ": alphaMode " + inQuotes(from.alphaMode) + " was taken as OPAQUE");
+        }
+        m.alphaCutoff = inRange(from.alphaCutoff, 0, 1e30, called, "alphaCutoff");
+        m.doubleSided = from.doubleSided;
+        m.transmission =
+            inRange(number(extensions, "KHR_materials_transmission", "transmissionFactor", 0), 0, 1, called, "transmissionFactor");
+        m.indexOfRefraction = inRange(number(extensions, "KHR_materials_ior", "ior", 1.5), 1, 3, called, "ior");
+        readVolume(extensions, called, m);
+        readEmission(from, called, m);
+
+        std::string left;
+        const auto leave = [&](bool there, const char* what) {
+            if (there) left += (left.empty() ? "" : ", ") + std::string(what);
+        };
+        leave(hasMember(extensions, "KHR_materials_transmission", "transmissionTexture"), "transmission");
+        leave(hasMember(extensions, "KHR_materials_volume", "thicknessTexture"), "thickness");
+        leave(pbr.metallicRoughnessTexture.index >= 0, "roughness");
+        if (!left.empty()) warn("material " + called + ": its textures of " + left + " are left out, the plain factors hold");
+        return m;
+    }
+
+    void readVolume(const tinygltf::ExtensionMap& extensions, const std::string& called, Material& m) {
+        constexpr const char* kVolume = "KHR_materials_volume";
+        m.thickness = inRange(number(extensions, kVolume, "thicknessFactor", 0), 0, 1e30, called, "thicknessFactor");
+        m.attenuationDistance = inRange(number(extensions, kVolume, "attenuationDistance", 0), 0, 3e38, called, "attenuationDistance");
+        if (!hasMember(extensions, kVolume, "attenuationColor")) return;
+        const tinygltf::Value& colour = extensions.at(kVolume).Get("attenuationColor");
+        for (int c = 0; c < 3; ++c) {
+            const tinygltf::Value* value = colour.IsArray() && colour.ArrayLen() == 3 ? &colour.Get(c) : nullptr;
+            if (value == nullptr || !value->IsNumber()) fail("attenuationColor is not three numbers", "materials " + called);
+            // Black would absorb everything at any distance; what is left of 1e-5 cannot be seen either.
+            m.attenuationColour[c] = inRange(value->GetNumberAsDouble(), 0, 1, called, "attenuationColor");
+            m.attenuationColour[c] = std::max(m.attenuationColour[c], 1e-5f);
+        }
+    }
+
+    void readEmission(const tinygltf::Material& from, const std::string& called, Material& m) {
+        if (from.emissiveFactor.size() != 3) return;
+        const double strength = number(from.extensions, "KHR_materials_emissive_strength", "emissiveStrength", 1);
+        for (int c = 0; c < 3; ++c) {
+            m.emission[c] = inRange(from.emissiveFactor[static_cast<std::size_t>(c)] * strength, 0, 1e30, called, "emissiveFactor");
+        }
+        // The factor of a textured glow is mostly 1 and the texture mostly black: without it the whole surface would shine.
+        if (from.emissiveTexture.index >= 0 && m.emission != Float3(0.0f)) {
+            m.emission = Float3(0.0f);
+            warn("material " + called + ": its glow comes from a texture and is left out");
+        }
+    }
+
+    void readBaseTexture(std::size_t index) {
+        const tinygltf::TextureInfo& info = model_.materials[index].pbrMetallicRoughness.baseColorTexture;
+        if (info.index < 0) return;
+        const std::string place = at("materials", index);
+        if (static_cast<std::size_t>(info.index) >= model_.textures.size()) {
+            fail("there is no texture " + std::to_string(info.index), place);
+        }
+        const tinygltf::Texture& texture = model_.textures[static_cast<std::size_t>(info.index)];
+        int image = texture.source;
+        if (image < 0) image = static_cast<int>(number(texture.extensions, "EXT_texture_webp", "source", -1));
+        if (image < 0) {
+            warn(at("textures", static_cast<std::size_t>(info.index)) + ": it names no picture of a kind that is read");
+            return;
+        }
+        if (static_cast<std::size_t>(image) >= images_.size()) fail("there is no image " + std::to_string(image), place);
+        baseTextures_[index] = image;
+        Material& m = scene_.materials[index];
+        constexpr const char* kTransform = "KHR_texture_transform";
+        double set = number(info.extensions, kTransform, "texCoord", info.texCoord);
+        texcoordSets_[index] = static_cast<int>(std::clamp(set, 0.0, 1000.0));
+        m.textureRotation = static_cast<float>(number(info.extensions, kTransform, "rotation", 0));
+        const auto pair = [&](const char* key, Float2& into) {
+            if (!hasMember(info.extensions, kTransform, key)) return;
+            const tinygltf::Value& value = info.extensions.at(kTransform).Get(key);
+            for (int c = 0; c < 2; ++c) {
+                if (!value.IsArray() || value.ArrayLen() != 2 || !value.Get(c).IsNumber()) fail(std::string(key) + " is not two numbers", place);
+                into[c] = static_cast<float>(value.Get(c).GetNumberAsDouble());
+            }
+        };
+        pair("offset", m.textureOffset);
+        pair("scale", m.textureScale);
+    }
+
+    // Only pictures of materials that a triangle has; each once. A missing or broken one is a warning.
+    void readTextures() {
+        std::vector<char> used(scene_.materials.size(), 0);
+        for (std::uint32_t id : scene_.mesh.materials) used[id] = 1;
+        std::map<int, int> read;
+        for (std::size_t i = 0; i < baseTextures_.size(); ++i) {
+            const int image = baseTextures_[i];
+            if (!used[i] || image < 0) continue;
+            const auto [entry, isNew] = read.emplace(image, -1);
+            if (isNew) {
+                try {
+                    scene_.textures.push_back(picture(static_cast<std::size_t>(image)));
+                    entry->second = static_cast<int>(scene_.textures.size()) - 1;
+                } catch (const Error& error) {
+                    warn("picture " + std::to_string(image) + " is missing or broken, the plain base colour holds (" + error.text().what +
+                         ")");
+                }
+            }
+            scene_.materials[i].baseColourTexture = entry->second;
+        }
+    }
+
+    Picture picture(std::size_t index) {
+        const std::string place = at("images", index);
+        const Json& image = images_[index];
+        if (const auto uri = image.find("uri"); uri != image.end()) {
+            if (!uri->is_string()) fail("uri is no text", place);
+            const std::string& text = uri->get_ref<const std::string&>();
+            const std::vector<std::byte> bytes = bytesOfUri(text, place);
+            return loadPictureFromMemory(bytes, text.starts_with("data:") ? source_.name + ", " + place : text);
+        }
+        const auto view = image.find("bufferView");
+        if (view == image.end() || !view->is_number_integer()) fail("it has neither uri nor bufferView", place);
+        return loadPictureFromMemory(viewBytes(view->get<int>(), place), source_.name + ", " + place);
+    }
+
+    // ---- triangles ----
+
+    struct Vertices {
+        std::uint32_t first = 0;
+        std::vector<char> mirrored;  // one a vertex of a skin; else one for all
+        bool hasNormals = false;
+    };
+
+    bool has(const Placed& one, const std::string& name) const { return primitive(one).attributes.count(name) != 0; }
+    const tinygltf::Primitive& primitive(const Placed& one) const { return model_.meshes[one.mesh].primitives[one.primitive]; }
+
+    std::string texcoordName(const Placed& one) const {
+        const int id = primitive(one).material;
+        const int set = id >= 0 ? texcoordSets_[static_cast<std::size_t>(id)] : 0;
+        return "TEXCOORD_" + std::to_string(set);
+    }
+
+    void assemble(const std::vector<Placed>& placed) {
+        Mesh& mesh = scene_.mesh;
+        std::size_t withNormals = 0;
+        for (const Placed& one : placed) {
+            const int id = primitive(one).material;
+            if (id >= 0 && static_cast<std::size_t>(id) >= model_.materials.size()) {
+                fail("there is no material " + std::to_string(id), primitivePlace(one));
+            }
+            withNormals += has(one, "NORMAL");
+            anyTexcoords_ = anyTexcoords_ || has(one, texcoordName(one));
+            anyColours_ = anyColours_ || has(one, "COLOR_0");
+        }
+        anyNormals_ = withNormals != 0;
+
+        // Primitives of one mesh often share all their vertices; these are taken once.
+        using Key = std::pair<std::map<std::string, int>, std::string>;
+        std::map<Key, Vertices> shared;
+        std::size_t node = static_cast<std::size_t>(-1);
+        for (const Placed& one : placed) {
+            if (one.node != node) shared.clear();
+            node = one.node;
+            const auto [entry, isNew] = shared.try_emplace(Key(primitive(one).attributes, texcoordName(one)));
+            if (isNew || !primitive(one).targets.empty()) entry->second = addVertices(one);
+            addTriangles(one, entry->second);
+        }
+        if (mesh.indices.empty()) fail("no triangles in the scene", "", "a file with a mesh that a node of the scene shows");
+        settleUnusedVertices();
+        if (cameraNode_) readCamera(*cameraNode_, mesh.bounds());
+    }
+
+    Vertices addVertices(const Placed& one) {
+        const tinygltf::Primitive& from = primitive(one);
+        const std::string place = primitivePlace(one);
+        Mesh& mesh = scene_.mesh;
+        const auto take = [&](const std::string& name, std::initializer_list<int> widths) {
+            const auto found = from.attributes.find(name);
+            return found == from.attributes.end() ? Attribute() : attribute(found->second, place + "." + name, widths);
+        };
+        Attribute positions = take("POSITION", {3});
+        Attribute normals = take("NORMAL", {3});
+        const Attribute texcoords = take(texcoordName(one), {2}), colours = take("COLOR_0", {3, 4});
+        addMorphTargets(one, positions, normals);
+
+        const std::size_t count = positions.count;
+        for (const Attribute* other : {&std::as_const(normals), &texcoords, &colours}) {
+            if (!other->empty() && other->count != count) {
+                fail(std::to_string(other->count) + " values of an attribute for " + std::to_string(count) + " vertices", place);
+            }
+        }
+        if (mesh.positions.size() + count > kMostCounted) fail("more than 2^32 vertices", place, "fewer instances", ErrorCode::unsupported);
+
+        Vertices added;
+        added.first = static_cast<std::uint32_t>(mesh.positions.size());
+        added.hasNormals = !normals.empty();
+        const std::vector<glm::dmat4> poses = skinPoses(one, count);
+        const glm::dmat4& rigid = world_[one.node];
+        added.mirrored.assign(poses.empty() ? 1 : count, 0);
+        glm::dmat3 linear, turn;
+        for (std::size_t i = 0; i < count; ++i) {
+            const glm::dmat4& m = poses.empty() ? rigid : poses[i];
+            if (i == 0 || !poses.empty()) {
+                linear = glm::dmat3(m);
+                turn = normalMatrix(linear);
+                added.mirrored[poses.empty() ? 0 : i] = glm::determinant(linear) < 0;
+            }
+            mesh.positions.push_back(Float3(glm::dvec3(m * glm::dvec4(glm::dvec3(positions.float3(i)), 1.0))));
+            if (anyNormals_) mesh.normals.push_back(normals.empty() ? Float3(0.0f) : unitOrZero(turn * glm::dvec3(normals.float3(i))));
+            if (anyTexcoords_) {
+                const Float2 uv = texcoords.empty() ? Float2(0.0f) : texcoords.float2(i);
+                mesh.texcoords.push_back(std::isfinite(uv.x) && std::isfinite(uv.y) ? uv : Float2(0.0f));
+            }
+            if (anyColours_) {
+                Float4 colour(1.0f);
+                for (int c = 0; c < colours.width; ++c) {
+                    const float value = colours.values[i * static_cast<std::size_t>(colours.width) + static_cast<std::size_t>(c)];
+                    colour[c] = value >= 0.0f && std::isfinite(value) ? value : 0.0f;
+                }
+                mesh.colours.push_back(colour);
+            }
+        }
+        return added;
+    }
+
+    // Blend shapes at the weights that node or mesh name for rest.
+    void addMorphTargets(const Placed& one, Attribute& positions, Attribute& normals) {
+        const tinygltf::Primitive& from = primitive(one);
+        const std::vector<double>& own = model_.nodes[one.node].weights;
+        const std::vector<double>& weights = own.empty() ? model_.meshes[one.mesh].weights : own;
+        for (std::size_t t = 0; t < std::min(weights.size(), from.targets.size()); ++t) {
+            if (weights[t] == 0) continue;
+            for (auto [name, into] : {std::pair("POSITION", &positions), std::pair("NORMAL", &normals)}) {
+                const auto found = from.targets[t].find(name);
+                if (found == from.targets[t].end() || into->empty()) continue;
+                const std::string place = primitivePlace(one) + "." + at("targets", t);
+                const Attribute delta = attribute(found->second, place, {3});
+                if (delta.count != into->count) fail("its count is not that of the vertices", place);
+                for (std::size_t k = 0; k < delta.values.size(); ++k) {
+                    into->values[k] += static_cast<float>(weights[t] * delta.values[k]);
+                }
+            }
+        }
+    }
+
+    // One matrix a vertex: joints where the nodes put them, blended by weights. Empty for what has no skin; the transform of the
+    // skinned node itself has no say.
+    std::vector<glm::dmat4> skinPoses(const Placed& one, std::size_t count) {
+        const int index = model_.nodes[one.node].skin;
+        if (index < 0 || !has(one, "JOINTS_0") || !has(one, "WEIGHTS_0")) return {};
+        const std::vector<glm::dmat4> palette = jointPalette(static_cast<std::size_t>(index));
+        std::vector<glm::dmat4> poses(count, glm::dmat4(0.0));
+        std::vector<double> sums(count, 0.0);
+        std::vector<std::uint32_t> firstJoint(count, 0);
+        const std::string place = primitivePlace(one);
+        for (int set = 0; set < 16; ++set) {
+            const std::string jointName = "JOINTS_" + std::to_string(set), weightName = "WEIGHTS_" + std::to_string(set);
+            if (!has(one, jointName) || !has(one, weightName)) break;
+            const Attribute joints = attribute(primitive(one).attributes.at(jointName), place + "." + jointName, {4});
+            const Attribute weights = attribute(primitive(one).attributes.at(weightName), place + "." + weightName, {4});
+            if (joints.count != count || weights.count != count) fail("joints, weights and positions differ in count", place);
+            for (std::size_t k = 0; k < count * 4; ++k) {
+                const float weight = weights.values[k];
+                const bool counts = weight > 0.0f && std::isfinite(weight);
+                if (!counts && (set != 0 || k % 4 != 0)) continue;
+                const float joint = joints.values[k];
+                if (!(joint >= 0.0f && joint < static_cast<float>(palette.size()))) {
+                    if (!counts) continue;
+                    fail("vertex " + std::to_string(k / 4) + " follows joint " + std::to_string(static_cast<long long>(joint)) + " of " +
+                             std::to_string(palette.size()),
+                         place + "." + jointName, "a skin with all joints that its vertices name");
+                }
+                const auto j = static_cast<std::uint32_t>(joint);
+                if (set == 0 && k % 4 == 0) firstJoint[k / 4] = j;
+                if (!counts) continue;
+                poses[k / 4] += palette[j] * static_cast<double>(weight);
+                sums[k / 4] += static_cast<double>(weight);
+            }
+        }
+        std::size_t zero = 0, scaled = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            if (sums[i] > 0) {
+                scaled += std::abs(sums[i] - 1.0) > 0.02;
+                poses[i] /= sums[i];
+            } else {
+                ++zero;
+                poses[i] = palette[firstJoint[i]];
+            }
+        }
+        if (zero != 0) repaired(place + ": " + std::to_string(zero) + " vertices whose joint weights sum to zero follow their first joint");
+        if (scaled != 0) repaired(place + ": the joint weights of " + std::to_string(scaled) + " vertices were scaled to sum to one");
+        return poses;
+    }
+
+    std::vector<glm::dmat4> jointPalette(std::size_t index) {
+        const tinygltf::Skin& skin = model_.skins[index];
+        const std::string place = at("skins", index);
+        if (skin.joints.empty()) fail("it has no joints", place);
+        Attribute inverse;
+        if (skin.inverseBindMatrices >= 0) {
+            inverse = attribute(skin.inverseBindMatrices, place + ".inverseBindMatrices", {16});
+            if (inverse.count < skin.joints.size()) {
+                fail(std::to_string(inverse.count) + " inverse bind matrices for " + std::to_string(skin.joints.size()) + " joints", place);
+            }
+        }
+        std::vector<glm::dmat4> palette;
+        for (std::size_t j = 0; j < skin.joints.size(); ++j) {
+            const int node = skin.joints[j];
+            if (node < 0 || static_cast<std::size_t>(node) >= world_.size()) fail("there is no node " + std::to_string(node), place);
+            glm::dmat4 bind(1.0);
+            if (!inverse.empty()) {
+                for (int k = 0; k < 16; ++k) bind[k / 4][k % 4] = inverse.values[j * 16 + static_cast<std::size_t>(k)];
+            }
+            palette.push_back(world_[static_cast<std::size_t>(node)] * bind);
+        }
+        return palette;
+    }
+
+    void repaired(const std::string& sentence) {
+        auto& repairs = scene_.mesh.repairs;
+        if (std::find(repairs.begin(), repairs.end(), sentence) == repairs.end()) repairs.push_back(sentence);
+    }
+
+    void addTriangles(const Placed& one, const Vertices& vertices) {
+        const tinygltf::Primitive& from = primitive(one);
+        const std::string place = primitivePlace(one);
+        Mesh& mesh = scene_.mesh;
+        const std::size_t count = accessor(from.attributes.at("POSITION"), place).count;
+        std::vector<std::uint32_t> corners;
+        if (from.indices >= 0) {
+            corners = indices(from.indices, place + ".indices");
+            for (std::size_t i = 0; i < corners.size(); ++i) {
+                if (corners[i] >= count) {
+                    fail("index " + std::to_string(i) + " is " + std::to_string(corners[i]) + ", but there are " + std::to_string(count) +
+                             " vertices",
+                         place + ".indices");
+                }
+            }
+        } else {
+            corners.resize(count);
+            for (std::size_t i = 0; i < count; ++i) corners[i] = static_cast<std::uint32_t>(i);
+        }
+        if (mesh.indices.size() / 3 + corners.size() > kMostCounted) {
+            fail("more than 2^32 triangles", place, "fewer instances", ErrorCode::unsupported);
+        }
+        const std::uint32_t id = from.material >= 0 ? static_cast<std::uint32_t>(from.material) : plainMaterial();
+
+        const auto triangle = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+            for (std::uint32_t v : {a, b, c}) {
+                if (!finite(mesh.positions[vertices.first + v])) {
+                    fail("vertex " + std::to_string(v) + " is not finite in world space", place + ".POSITION", "the mesh as its tool exports it anew");
+                }
+            }
+            if (vertices.mirrored[vertices.mirrored.size() == 1 ? 0 : a]) std::swap(b, c);
+            if (anyNormals_ && !vertices.hasNormals) {
+                flatTriangle(vertices.first, {a, b, c});
+            } else {
+                for (std::uint32_t v : {a, b, c}) mesh.indices.push_back(vertices.first + v);
+            }
+            mesh.materials.push_back(id);
+        };
+        const std::size_t total = corners.size();
+        if (from.mode == TINYGLTF_MODE_TRIANGLES) {
+            if (total % 3 != 0) repaired(place + ": " + std::to_string(total % 3) + " corners at the end make no triangle");
+            for (std::size_t i = 0; i + 3 <= total; i += 3) triangle(corners[i], corners[i + 1], corners[i + 2]);
+        } else if (from.mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
+            for (std::size_t i = 0; i + 3 <= total; ++i) {
+                const std::uint32_t a = corners[i], b = corners[i + 1 + i % 2], c = corners[i + 2 - i % 2];
+                // A repeated corner only joins two strips.
+                if (a != b && b != c && c != a) triangle(a, b, c);
+            }
+        } else {
+            for (std::size_t i = 1; i + 2 <= total; ++i) triangle(corners[i], corners[i + 1], corners[0]);
+        }
+    }
+
+    // Corners of its own with the face normal, as glTF asks for where normals are missing and other primitives have them.
+    void flatTriangle(std::uint32_t first, std::array<std::uint32_t, 3> corners) {
+        Mesh& mesh = scene_.mesh;
+        const glm::dvec3 a(mesh.positions[first + corners[0]]), b(mesh.positions[first + corners[1]]), c(mesh.positions[first + corners[2]]);
+        const Float3 normal = unitOrZero(glm::cross(b - a, c - a));
+        if (mesh.positions.size() + 3 > kMostCounted) fail("more than 2^32 vertices", "", "fewer instances", ErrorCode::unsupported);
+        for (std::uint32_t corner : corners) {
+            const std::size_t v = first + corner;
+            mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+            mesh.positions.push_back(Float3(mesh.positions[v]));
+            mesh.normals.push_back(normal);
+            if (anyTexcoords_) mesh.texcoords.push_back(Float2(mesh.texcoords[v]));
+            if (anyColours_) mesh.colours.push_back(Float4(mesh.colours[v]));
+        }
+    }
+
+    // glTF's own default, for primitives that name none.
+    std::uint32_t plainMaterial() {
+        if (!plain_) {
+            plain_ = static_cast<std::uint32_t>(scene_.materials.size());
+            Material m;
+            m.name = "default";
+            m.baseColour = Float3(1.0f);
+            scene_.materials.push_back(m);
+            baseTextures_.push_back(-1);
+            texcoordSets_.push_back(0);
+        }
+        return *plain_;
+    }
+
+    // Vertices that no triangle uses may be anything; bounds look at all.
+    void settleUnusedVertices() {
+        Mesh& mesh = scene_.mesh;
+        const Float3 somewhere = mesh.positions[mesh.indices.front()];
+        std::size_t moved = 0;
+        for (Float3& p : mesh.positions) {
+            if (finite(p)) continue;
+            p = somewhere;
+            ++moved;
+        }
+        if (moved != 0) repaired(std::to_string(moved) + " vertices that are not finite and that no triangle uses were moved");
+    }
+
+    const Source& source_;
+    Scene scene_;
+    Json document_, buffers_, images_;
+    std::optional<Bytes> binary_;
+    std::vector<std::optional<std::vector<std::byte>>> loaded_;  // buffers from files and data URIs
+    tinygltf::Model model_;
+    std::vector<glm::dmat4> world_;  // of every node
+    std::optional<std::size_t> cameraNode_;
+    bool lightRead_ = false;
+    std::vector<int> baseTextures_, texcoordSets_;  // by material: image or -1, and the set that places it
+    std::optional<std::uint32_t> plain_;
+    bool anyNormals_ = false, anyTexcoords_ = false, anyColours_ = false;
+};
+
+}  // namespace
+
+Scene readGltf(const Source& source) { return GltfReader(source).read(); }
+
+}  // namespace vitrail::io_detail

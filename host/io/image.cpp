@@ -1,0 +1,218 @@
+// io/image.cpp: pictures through OpenImageIO. Every format that OpenImageIO can read from memory is read from memory, so that a file
+// and a picture inside another file take the same path.
+#include <vitrail/io/image.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <string_view>
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <vitrail/core/error.h>
+
+#include "io/readers.h"
+
+namespace vitrail {
+inline namespace v0 {
+
+namespace {
+
+constexpr std::uint32_t kMostPixels = 16384;  // along one side
+// No format packs more: deflate at its best leaves a byte for a thousand, of eight one-bit pixels each.
+constexpr std::uint64_t kMostPixelsPerByte = 16384;
+
+[[noreturn]] void fail(const std::string& what, const std::string& name, const std::string& remedy = {},
+                       ErrorCode code = ErrorCode::badFile) {
+    throw Error(code, {"picture: " + what, name, "", remedy});
+}
+
+std::string lowerExtension(const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return extension.empty() ? extension : extension.substr(1);
+}
+
+// By the first bytes, since pictures inside a glTF file have no name; empty where they say nothing.
+std::string formatOf(std::span<const std::byte> bytes) {
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    struct Mark {
+        std::string_view bytes;
+        const char* format;
+    };
+    using namespace std::string_view_literals;
+    constexpr Mark kMarks[] = {{"\x89PNG"sv, "png"},    {"\xff\xd8\xff"sv, "jpeg"}, {"#?"sv, "hdr"},     {"\x76\x2f\x31\x01"sv, "openexr"},
+                               {"II*\0"sv, "tiff"},     {"MM\0*"sv, "tiff"},        {"BM"sv, "bmp"},     {"GIF8"sv, "gif"},
+                               {"8BPS"sv, "psd"},       {"SDPX"sv, "dpx"},          {"XPDS"sv, "dpx"}};
+    for (const Mark& mark : kMarks) {
+        if (text.starts_with(mark.bytes)) return mark.format;
+    }
+    if (text.starts_with("RIFF") && text.substr(0, 12).ends_with("WEBP")) return "webp";
+    return {};
+}
+
+float fromSrgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
+float toSrgb(float v) { return v <= 0.0031308f ? v * 12.92f : 1.055f * std::pow(v, 1.0f / 2.4f) - 0.055f; }
+
+float tidy(float v) { return std::isfinite(v) && v > 0.0f ? v : 0.0f; }
+
+// Hable's curve for shoulder and toe with the constants of his talk.
+float hable(float x) {
+    constexpr float a = 0.15f, b = 0.50f, c = 0.10f, d = 0.20f, e = 0.02f, f = 0.30f;
+    return (x * (a * x + c * b) + d * e) / (x * (a * x + b) + d * f) - e / f;
+}
+
+// Brings a picture that is stored turned or mirrored (numbers as in TIFF and Exif) to row 0 at the top.
+Picture upright(Picture stored, int orientation) {
+    if (orientation <= 1 || orientation > 8) return stored;
+    const bool swapped = orientation >= 5;
+    const std::uint32_t w = swapped ? stored.height : stored.width, h = swapped ? stored.width : stored.height;
+    Picture turned(w, h);
+    for (std::uint32_t y = 0; y < h; ++y) {
+        for (std::uint32_t x = 0; x < w; ++x) {
+            std::uint32_t sx = swapped ? y : x, sy = swapped ? x : y;
+            if (orientation == 2 || orientation == 3 || orientation == 7 || orientation == 8) sx = stored.width - 1 - sx;
+            if (orientation == 3 || orientation == 4 || orientation == 6 || orientation == 7) sy = stored.height - 1 - sy;
+            turned.at(x, y) = stored.at(sx, sy);
+        }
+    }
+    return turned;
+}
+
+std::string reasonOf(OIIO::ImageInput* input) {
+    std::string reason = input != nullptr ? input->geterror() : std::string();
+    const std::string general = OIIO::geterror();  // asked for in any case, so that none is left behind
+    if (reason.empty()) reason = general;
+    while (!reason.empty() && (reason.back() == '\n' || reason.back() == '.')) reason.pop_back();
+    return reason.empty() ? "the format's reader gives no reason" : reason;
+}
+
+Picture decode(std::span<const std::byte> bytes, const std::string& name) {
+    if (bytes.empty()) fail("the file is empty", name);
+    std::string format = formatOf(bytes);
+    if (format.empty()) format = lowerExtension(name);
+    std::unique_ptr<OIIO::ImageInput> input = format.empty() ? nullptr : OIIO::ImageInput::create(format);
+    if (!input) {
+        reasonOf(nullptr);
+        fail("its first bytes are those of no known format", name, ".hdr, .exr, .png, .jpg, .tif or .webp", ErrorCode::unsupported);
+    }
+    if (!input->supports("ioproxy")) {
+        fail("the format " + format + " is not read", name, ".hdr, .exr, .png, .jpg, .tif or .webp", ErrorCode::unsupported);
+    }
+    OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(bytes.data()), bytes.size());
+    OIIO::ImageSpec config, spec;
+    OIIO::Filesystem::IOProxy* proxy = &memory;
+    config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    config.attribute("oiio:UnassociatedAlpha", 1);
+    if (!input->open("in_memory." + format, spec, config)) fail(reasonOf(input.get()), name, "the whole file");
+
+    if (spec.width <= 0 || spec.height <= 0 || spec.depth > 1 || spec.nchannels <= 0 || spec.nchannels > 64) {
+        fail("a size of " + std::to_string(spec.width) + " x " + std::to_string(spec.height) + " x " + std::to_string(spec.depth) + ", " +
+                 std::to_string(spec.nchannels) + " channels",
+             name, "a flat picture");
+    }
+    const auto w = static_cast<std::uint32_t>(spec.width), h = static_cast<std::uint32_t>(spec.height);
+    if (w > kMostPixels || h > kMostPixels) {
+        fail(std::to_string(w) + " x " + std::to_string(h) + " pixels, more than " + std::to_string(kMostPixels) + " along a side", name,
+             "a smaller version of it");
+    }
+    if (std::uint64_t(w) * h > bytes.size() * kMostPixelsPerByte) {
+        fail(std::to_string(w) + " x " + std::to_string(h) + " pixels cannot lie in " + std::to_string(bytes.size()) + " bytes", name,
+             "the whole file");
+    }
+
+    Picture picture(w, h, Float4(0.0f, 0.0f, 0.0f, 1.0f));
+    const int channels = std::min(spec.nchannels, 4);
+    if (!input->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, picture.pixels.data(), sizeof(Float4),
+                           static_cast<OIIO::stride_t>(sizeof(Float4)) * w)) {
+        fail(reasonOf(input.get()), name, "the whole file");
+    }
+    const bool encoded = !spec.format.is_floating_point() && spec.get_string_attribute("oiio:ColorSpace") != "Linear";
+    for (Float4& pixel : picture.pixels) {
+        if (channels == 2) pixel.w = pixel.y;
+        if (channels <= 2) pixel.y = pixel.z = pixel.x;
+        for (int c = 0; c < 4; ++c) pixel[c] = tidy(pixel[c]);
+        if (encoded) {
+            for (int c = 0; c < 3; ++c) pixel[c] = fromSrgb(pixel[c]);
+        }
+    }
+    const int orientation = spec.get_int_attribute("Orientation", 1);
+    input->close();
+    reasonOf(input.get());
+    return upright(std::move(picture), orientation);
+}
+
+void write(const std::filesystem::path& path, const std::string& format, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
+           const void* pixels, const std::string& name) {
+    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
+    const bool good = output && output->open(path.string(), spec) && output->write_image(type, pixels) && output->close();
+    std::string reason = output ? output->geterror() : std::string();
+    if (const std::string general = OIIO::geterror(); reason.empty()) reason = general;
+    if (!good) fail("it cannot be written: " + reason, name, "a folder that can be written to, with space");
+}
+
+}  // namespace
+
+Picture loadPicture(const std::filesystem::path& file) { return decode(io_detail::readFile(file), file.string()); }
+
+Picture loadPictureFromMemory(std::span<const std::byte> bytes, const std::string& name) { return decode(bytes, name); }
+
+void savePicture(const std::filesystem::path& file, const Picture& picture, float exposure) {
+    const std::string name = file.string(), format = lowerExtension(file);
+    if (format != "exr" && format != "png") {
+        fail("pictures are written as .exr or .png, not as " + (format.empty() ? "a file without ending" : "." + format), name,
+             "the ending .exr or .png", ErrorCode::unsupported);
+    }
+    if (picture.width == 0 || picture.height == 0 ||
+        picture.pixels.size() != static_cast<std::size_t>(picture.width) * picture.height) {
+        fail("a picture of " + std::to_string(picture.width) + " x " + std::to_string(picture.height) + " with " +
+                 std::to_string(picture.pixels.size()) + " pixels",
+             name, "a picture that holds something", ErrorCode::badInput);
+    }
+    if (!(exposure > 0.0f) || !std::isfinite(exposure)) {
+        fail("exposure " + std::to_string(exposure), name, "a number above 0", ErrorCode::badOption);
+    }
+    const int w = static_cast<int>(picture.width), h = static_cast<int>(picture.height);
+    const bool opaque =
+        std::all_of(picture.pixels.begin(), picture.pixels.end(), [](const Float4& pixel) { return pixel.w >= 1.0f; });
+    const int channels = opaque ? 3 : 4;
+    if (format == "exr") {
+        std::vector<float> values;
+        values.reserve(picture.pixels.size() * static_cast<std::size_t>(channels));
+        for (const Float4& pixel : picture.pixels) {
+            // Half floats end at 65504; beyond they would become infinite.
+            for (int c = 0; c < channels; ++c) values.push_back(std::min(tidy(pixel[c]), 65504.0f));
+        }
+        OIIO::ImageSpec spec(w, h, channels, OIIO::TypeDesc::HALF);
+        spec.attribute("compression", "zip");
+        io_detail::writeWhole(file, [&](const std::filesystem::path& path) {
+            write(path, "openexr", spec, OIIO::TypeDesc::FLOAT, values.data(), name);
+        });
+        return;
+    }
+    const float white = hable(4.0f);
+    std::vector<std::uint8_t> values;
+    values.reserve(picture.pixels.size() * static_cast<std::size_t>(channels));
+    for (const Float4& pixel : picture.pixels) {
+        for (int c = 0; c < channels; ++c) {
+            // Far beyond white the curve is flat; the bound keeps its squares finite.
+            const float linear = c == 3 ? tidy(pixel[c]) : hable(std::min(tidy(pixel[c]) * exposure, 1e6f)) / white;
+            const float value = c == 3 ? linear : toSrgb(linear);
+            values.push_back(static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f)));
+        }
+    }
+    OIIO::ImageSpec spec(w, h, channels, OIIO::TypeDesc::UINT8);
+    spec.attribute("oiio:UnassociatedAlpha", 1);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    io_detail::writeWhole(file, [&](const std::filesystem::path& path) {
+        write(path, "png", spec, OIIO::TypeDesc::UINT8, values.data(), name);
+    });
+}
+
+}  // namespace v0
+}  // namespace vitrail

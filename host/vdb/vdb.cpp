@@ -1,0 +1,170 @@
+// vdb/vdb.cpp: occupancy as an OpenVDB file. Nothing of OpenVDB shows outside this file.
+#include <vitrail/io/vdb.h>
+
+#include <atomic>
+#include <cmath>
+#include <string>
+#include <system_error>
+
+#include <unistd.h>
+
+#include <openvdb/openvdb.h>
+
+#include <vitrail/core/error.h>
+
+namespace vitrail {
+inline namespace v0 {
+
+namespace {
+
+[[noreturn]] void fail(const std::string& what, const std::filesystem::path& file, const std::string& remedy,
+                       ErrorCode code = ErrorCode::badFile) {
+    throw Error(code, {"vdb: " + what, file.string(), "", remedy});
+}
+
+void expectBox(const Grid& grid, const std::filesystem::path& file) {
+    if (!grid.isBox()) fail("a camera's grid has no place in OpenVDB's world", file, "a box grid, or .npy", ErrorCode::unsupported);
+}
+
+// The index of a cell in the file, whose axes may be turned.
+openvdb::Coord turned(std::uint32_t x, std::uint32_t y, std::uint32_t z, const Uint3& size, bool zUp) {
+    if (!zUp) return {static_cast<int>(x), static_cast<int>(y), static_cast<int>(z)};
+    return {static_cast<int>(x), static_cast<int>(size.z - 1 - z), static_cast<int>(y)};
+}
+
+// Calls f(CoordBBox) for every active voxel or tile of a grid of type G; false where `base` is of another type.
+template <class G, class F>
+bool visitActive(const openvdb::GridBase& base, F&& f) {
+    if (!base.isType<G>()) return false;
+    const auto& tree = static_cast<const G&>(base).constTree();
+    for (auto value = tree.cbeginValueOn(); value; ++value) {
+        openvdb::CoordBBox box;
+        value.getBoundingBox(box);
+        f(box);
+    }
+    return true;
+}
+
+template <class F>
+bool visitActiveOfAnyType(const openvdb::GridBase& base, F&& f) {
+    using namespace openvdb;
+    return visitActive<BoolGrid>(base, f) || visitActive<MaskGrid>(base, f) || visitActive<FloatGrid>(base, f) ||
+           visitActive<DoubleGrid>(base, f) || visitActive<Int32Grid>(base, f) || visitActive<Int64Grid>(base, f) ||
+           visitActive<Vec3SGrid>(base, f) || visitActive<Vec3DGrid>(base, f) || visitActive<Vec3IGrid>(base, f);
+}
+
+VoxelBits place(const openvdb::GridBase& from, const std::filesystem::path& file, const Grid& grid) {
+    const openvdb::math::Transform& transform = from.transform();
+    if (!transform.isLinear()) fail("its first grid has no linear transform", file, "a grid of cubic voxels", ErrorCode::badInput);
+    // Cell of index (0,0,0), and the steps along the index axes, in voxels of `grid`.
+    const auto cellOf = [&](const openvdb::Vec3d& index) {
+        const openvdb::Vec3d world = transform.indexToWorld(index);
+        const double e = grid.edge();
+        const Float3 o = grid.origin();
+        return Double3((world.x() - double(o.x)) / e, (world.y() - double(o.y)) / e, (world.z() - double(o.z)) / e);
+    };
+    const Double3 base = cellOf({0, 0, 0});
+    for (int axis = 0; axis < 3; ++axis) {
+        openvdb::Vec3d far(0, 0, 0);
+        far[axis] = 1;
+        Double3 expected(0.0);
+        expected[axis] = 1.0;
+        const Double3 off = cellOf(far) - base - expected;
+        // A thousandth of a cell over ten voxels; a grid of another edge or turned axes is off by far more.
+        if (!(glm::length(off) < 1e-4)) {
+            fail("its voxels have other edges or axes than the grid (edge " + std::to_string(grid.edge()) + ")", file,
+                 "a grid with the file's voxel size", ErrorCode::badInput);
+        }
+    }
+    const double kFar = 1e9;
+    if (!(std::abs(base.x) < kFar && std::abs(base.y) < kFar && std::abs(base.z) < kFar)) {
+        fail("its voxels lie far from the grid", file, "a grid around the file's voxels", ErrorCode::badInput);
+    }
+    // Index i is a cell's centre; rounding in the transform must not move it over the cell's face.
+    const std::int64_t shift[3] = {static_cast<std::int64_t>(std::floor(base.x + 1e-4)), static_cast<std::int64_t>(std::floor(base.y + 1e-4)),
+                                   static_cast<std::int64_t>(std::floor(base.z + 1e-4))};
+    VoxelBits voxels(grid);
+    const Uint3 size = grid.size();
+    const auto mark = [&](const openvdb::CoordBBox& box) {
+        std::int64_t low[3], high[3];
+        for (int a = 0; a < 3; ++a) {
+            low[a] = box.min()[a] + shift[a];
+            high[a] = box.max()[a] + shift[a];
+            if (low[a] < 0 || high[a] >= static_cast<std::int64_t>(size[a])) {
+                fail("active voxels lie outside the grid of " + grid.text(), file, "a grid around all of them", ErrorCode::badInput);
+            }
+        }
+        for (std::int64_t z = low[2]; z <= high[2]; ++z) {
+            for (std::int64_t y = low[1]; y <= high[1]; ++y) {
+                for (std::int64_t x = low[0]; x <= high[0]; ++x) {
+                    voxels.set(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(z));
+                }
+            }
+        }
+    };
+    if (!visitActiveOfAnyType(from, mark)) {
+        fail("its first grid holds " + from.valueType(), file, "a grid of bool, numbers or vectors", ErrorCode::unsupported);
+    }
+    return voxels;
+}
+
+}  // namespace
+
+void saveVdb(const std::filesystem::path& file, const VoxelBits& voxels, const SaveOptions& options) {
+    expectBox(voxels.grid, file);
+    const Uint3 size = voxels.grid.size();
+    // The part `io`, which has a helper for this, stands above this one.
+    std::filesystem::path temporary = file;
+    static std::atomic<unsigned> count{0};
+    temporary += ".tmp" + std::to_string(::getpid()) + "." + std::to_string(count++);
+    try {
+        openvdb::initialize();
+        openvdb::BoolGrid::Ptr out = openvdb::BoolGrid::create(false);
+        out->setName("occupancy");
+        auto accessor = out->getAccessor();
+        for (std::uint32_t y = 0; y < size.y; ++y) {
+            for (std::uint32_t x = 0; x < size.x; ++x) {
+                for (std::uint32_t z = 0; z < size.z; ++z) {
+                    if (voxels.at(x, y, z)) accessor.setValueOn(turned(x, y, z, size, options.zUp), true);
+                }
+            }
+        }
+        out->pruneGrid();
+        const double edge = voxels.grid.edge();
+        const Float3 o = voxels.grid.origin();
+        const Double3 origin = options.zUp ? Double3(o.x, -(double(o.z) + edge * size.z), o.y) : Double3(o);
+        const openvdb::Vec3d centre(origin.x + edge / 2, origin.y + edge / 2, origin.z + edge / 2);
+        openvdb::math::Mat4d matrix = openvdb::math::Mat4d::identity();
+        matrix.setToScale(openvdb::Vec3d(edge));
+        matrix.setTranslation(centre);
+        out->setTransform(openvdb::math::Transform::createLinearTransform(matrix));
+        openvdb::io::File(temporary.string()).write({out});
+        std::filesystem::rename(temporary, file);
+    } catch (const std::exception& error) {
+        std::error_code ignored;
+        std::filesystem::remove(temporary, ignored);
+        if (dynamic_cast<const Error*>(&error) != nullptr) throw;
+        fail(std::string("the file cannot be written: ") + error.what(), file, "a folder that can be written to, with space");
+    }
+}
+
+VoxelBits loadVdb(const std::filesystem::path& file, const Grid& grid) {
+    expectBox(grid, file);
+    try {
+        openvdb::initialize();
+        openvdb::io::File in(file.string());
+        in.open(false);
+        const auto name = in.beginName();
+        if (name == in.endName()) fail("it holds no grid", file, "a file with one");
+        const openvdb::GridBase::Ptr first = in.readGrid(name.gridName());
+        if (!first) fail("its first grid cannot be read", file, "the whole file");
+        return place(*first, file, grid);
+    } catch (const openvdb::Exception& error) {
+        fail(error.what(), file, "a whole .vdb file");
+    } catch (const std::bad_alloc&) {
+        fail("its grid claims more memory than there is", file, "a whole .vdb file");
+    }
+}
+
+}  // namespace v0
+}  // namespace vitrail

@@ -1,0 +1,178 @@
+#include <vitrail/volume/voxels.h>
+
+#include <cmath>
+
+#include "core/call.h"
+#include "core/scan.h"
+#include "volume/voxels_state.h"
+
+namespace vitrail {
+inline namespace v0 {
+
+namespace detail {
+
+namespace {
+const Program kVolume{"volume", ""};
+
+const Buffer<std::uint32_t>& channelOf(const VoxelsState& state, Channel channel, const Buffer<std::uint32_t>& buffer, const char* name) {
+    if (!has(state.channels, channel))
+        throw Error(ErrorCode::badOption, {std::string("these voxels have no channel \"") + name + "\"", "", "",
+                                           std::string(".channels = Channel::") + name + " in the voxelizer's options"});
+    return buffer;
+}
+}  // namespace
+
+void makeRank(VoxelsState& state) {
+    if (state.rank) return;
+    Call call(state.queue, "ranking the voxels of a grid of " + state.grid.text());
+    const std::uint64_t groups = state.bits.size() / VITRAIL_WORDS_PER_RANK, chunks = scanChunks(groups);
+    Workspace& workspace = state.queue.workspace();
+    Buffer<std::uint32_t> rank = workspace.take<std::uint32_t>(groups, "rank directory of a grid of " + state.grid.text());
+    Buffer<std::uint32_t> sums = workspace.take<std::uint32_t>(chunks, "sums of a scan");
+    call.launchRange(kVolume, "voxels_rank_chunks", chunks, state.bits, rank, sums, groups);
+    state.occupied = finishScan(call, rank, sums);
+    if (*state.occupied > 0xffffffffull)
+        throw Error(ErrorCode::unsupported, {"a grid of " + state.grid.text() + " has " + std::to_string(*state.occupied) +
+                                                 " occupied voxels; ranks hold 32 bits", "", "", "a coarser grid"});
+    state.rank = std::move(rank);
+}
+
+std::uint64_t channelBytes(Channel channels, std::uint64_t occupied) {
+    return occupied * ((has(channels, Channel::count) ? 4 : 0) + (has(channels, Channel::normal) ? 4 + 24 : 0) +
+                       (has(channels, Channel::material) ? 4 : 0));
+}
+
+ChannelSums beginChannels(Call& call, VoxelsState& state) {
+    Workspace& workspace = call.queue().workspace();
+    const std::uint64_t occupied = *state.occupied;
+    ChannelSums sums;
+    if (has(state.channels, Channel::count)) {
+        state.counts = workspace.take<std::uint32_t>(occupied, "channel count");
+        call.fill(state.counts, 0);
+    }
+    if (has(state.channels, Channel::normal)) {
+        state.normals = workspace.take<std::uint32_t>(occupied, "channel normal");
+        sums.normalSums = workspace.take<std::int64_t>(3 * occupied, "sums of channel normal");
+        call.fill(sums.normalSums, 0);
+    }
+    if (has(state.channels, Channel::material)) {
+        state.materials = workspace.take<std::uint32_t>(occupied, "channel material");
+        call.fill(state.materials, 0xff);
+    }
+    return sums;
+}
+
+void endChannels(Call& call, VoxelsState& state, ChannelSums& sums) {
+    if (has(state.channels, Channel::normal))
+        call.launchRange(kVolume, "voxels_normals", *state.occupied, sums.normalSums, state.normals);
+}
+
+}  // namespace detail
+
+Voxels::Voxels(std::unique_ptr<detail::VoxelsState> state) : state_(std::move(state)) {}
+Voxels::Voxels(Voxels&&) noexcept = default;
+Voxels& Voxels::operator=(Voxels&&) noexcept = default;
+Voxels::~Voxels() = default;
+
+const Grid& Voxels::grid() const { return state_->grid; }
+Channel Voxels::channels() const { return state_->channels; }
+const Buffer<std::uint32_t>& Voxels::bits() const { return state_->bits; }
+
+const Buffer<std::uint32_t>& Voxels::rank() const {
+    detail::makeRank(*state_);
+    return state_->rank;
+}
+
+const Buffer<std::uint8_t>& Voxels::mip() const {
+    if (!state_->mip) {
+        detail::Call call(state_->queue, "the occupancy mip of a grid of " + state_->grid.text());
+        const std::uint64_t tiles = state_->bits.size() / VITRAIL_WORDS_PER_TILE;
+        Buffer<std::uint8_t> mip = state_->queue.workspace().take<std::uint8_t>(tiles, "occupancy mip");
+        call.launchRange(detail::kVolume, "voxels_mip", tiles, state_->bits, mip);
+        state_->mip = std::move(mip);
+    }
+    return state_->mip;
+}
+
+const Buffer<std::uint32_t>& Voxels::countBuffer() const { return detail::channelOf(*state_, Channel::count, state_->counts, "count"); }
+const Buffer<std::uint32_t>& Voxels::normalBuffer() const { return detail::channelOf(*state_, Channel::normal, state_->normals, "normal"); }
+const Buffer<std::uint32_t>& Voxels::materialBuffer() const {
+    return detail::channelOf(*state_, Channel::material, state_->materials, "material");
+}
+
+std::uint64_t Voxels::occupied() const {
+    if (!state_->occupied) detail::makeRank(*state_);
+    return *state_->occupied;
+}
+
+const VoxelBits& Voxels::host() const {
+    if (!state_->host) {
+        auto host = std::make_unique<VoxelBits>(state_->grid);
+        detail::readBytes(state_->queue, state_->bits.memory(), 0, host->words.data(), host->words.size() * sizeof(std::uint32_t));
+        state_->host = std::move(host);
+    }
+    return *state_->host;
+}
+
+const std::vector<std::uint32_t>& Voxels::counts() const {
+    if (state_->hostCounts.empty()) state_->hostCounts = countBuffer().read(state_->queue);
+    return state_->hostCounts;
+}
+
+const std::vector<std::uint32_t>& Voxels::materials() const {
+    if (state_->hostMaterials.empty()) state_->hostMaterials = materialBuffer().read(state_->queue);
+    return state_->hostMaterials;
+}
+
+const std::vector<Float3>& Voxels::normals() const {
+    if (state_->hostNormals.empty())
+        for (const std::uint32_t code : normalBuffer().read(state_->queue)) state_->hostNormals.push_back(unpackNormal(code));
+    return state_->hostNormals;
+}
+
+const VoxelReport& Voxels::report() const {
+    if (!state_->report) {
+        VoxelReport report;
+        static_cast<CallReport&>(report) = detail::resolve(*state_->record);
+        report.method = state_->method;
+        report.options = state_->options;
+        report.triangles = state_->triangles;
+        report.grid = state_->grid.size();
+        report.occupied = occupied();
+        if (state_->status) {
+            const std::vector<std::uint32_t> status = state_->status.read(state_->queue);
+            report.degenerateTriangles = status[detail::kStatusDegenerate];
+            report.skippedTriangles = status[detail::kStatusSkipped];
+            report.outsideTriangles = status[detail::kStatusOutside];
+        }
+        state_->report = report;
+    }
+    return *state_->report;
+}
+
+std::uint32_t packNormal(Float3 n) {
+    const float all = std::fabs(n.x) + std::fabs(n.y) + std::fabs(n.z);
+    if (!(all > 0.0f)) return 0;
+    float u = n.x / all, v = n.y / all;
+    if (n.z < 0.0f) {
+        const float foldU = (1.0f - std::fabs(v)) * (u < 0.0f ? -1.0f : 1.0f);
+        v = (1.0f - std::fabs(u)) * (v < 0.0f ? -1.0f : 1.0f);
+        u = foldU;
+    }
+    const auto code = [](float t) { return static_cast<std::uint32_t>(static_cast<std::uint16_t>(static_cast<std::int16_t>(std::rint(t * 32767.0f)))); };
+    return code(u) | (code(v) << 16);
+}
+
+Float3 unpackNormal(std::uint32_t code) {
+    const float u = static_cast<float>(static_cast<std::int16_t>(code & 0xffff)) / 32767.0f;
+    const float v = static_cast<float>(static_cast<std::int16_t>(code >> 16)) / 32767.0f;
+    Float3 n(u, v, 1.0f - std::fabs(u) - std::fabs(v));
+    if (n.z < 0.0f) {
+        n.x = (1.0f - std::fabs(v)) * (u < 0.0f ? -1.0f : 1.0f);
+        n.y = (1.0f - std::fabs(u)) * (v < 0.0f ? -1.0f : 1.0f);
+    }
+    return n / std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
+}
+
+}  // namespace v0
+}  // namespace vitrail

@@ -1,0 +1,57 @@
+// volume/voxels_state.h: what a Voxels owns. Voxelizers fill it through VoxelsBuilder.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <vitrail/volume/voxels.h>
+
+#include "core/call.h"
+
+namespace vitrail {
+inline namespace v0 {
+namespace detail {
+
+/// Counts that a voxelizer's kernels keep, in this order, in a buffer of kStatusWords u32 (kernels/lib/triangle.cl).
+enum Status : std::uint32_t { kStatusTasks, kStatusDegenerate, kStatusSkipped, kStatusOutside, kStatusWords };
+
+struct VoxelsState {
+    Queue queue;
+    Grid grid;
+    Channel channels = Channel::none;
+    Buffer<std::uint32_t> bits;
+    Buffer<std::uint32_t> counts, normals, materials;  // one entry an occupied voxel; empty unless asked for
+    Buffer<std::uint32_t> status;                      // kStatusWords; empty: nothing was counted
+    std::shared_ptr<Record> record;
+    std::string method, options;
+    std::uint64_t triangles = 0;
+
+    // Made when first asked for.
+    Buffer<std::uint32_t> rank;
+    Buffer<std::uint8_t> mip;
+    std::optional<std::uint64_t> occupied;
+    std::unique_ptr<VoxelBits> host;
+    std::optional<VoxelReport> report;
+    std::vector<std::uint32_t> hostCounts, hostMaterials;
+    std::vector<Float3> hostNormals;
+
+    VoxelsState(std::shared_ptr<QueueState> queueState, const Grid& g) : queue(std::move(queueState)), grid(g) {}
+};
+
+/// Fills `rank` and `occupied`; waits for the total. Throws Error (unsupported) past 2^32 - 1 occupied voxels.
+void makeRank(VoxelsState& state);
+
+/// Sums of the channels while fragments are added; counts and materials go straight to their buffers in the state.
+struct ChannelSums {
+    Buffer<std::int64_t> normalSums;
+};
+/// Takes and clears the buffers of the channels asked for; `state` has its rank.
+ChannelSums beginChannels(Call& call, VoxelsState& state);
+/// Turns the sums into the stored channels.
+void endChannels(Call& call, VoxelsState& state, ChannelSums& sums);
+std::uint64_t channelBytes(Channel channels, std::uint64_t occupied);
+
+}  // namespace detail
+}  // namespace v0
+}  // namespace vitrail

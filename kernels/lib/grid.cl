@@ -1,0 +1,43 @@
+// lib/grid.cl: world to voxel coordinates, operation by operation as Grid::toVoxel on the host.
+#ifndef VITRAIL_LIB_GRID
+#define VITRAIL_LIB_GRID
+#include "layout/grid.h"
+#include "lib/real.cl"
+#pragma OPENCL FP_CONTRACT OFF
+
+typedef struct {
+    real x, y, z;
+} Point;
+
+static inline real point_axis(const Point d, const vitrail_float4 axis) {
+    return d.x * REAL(axis.x) + d.y * REAL(axis.y) + d.z * REAL(axis.z);
+}
+
+// Voxel coordinates; a perspective grid gives x = y = 0 for points at or behind the eye, whose z is negative then.
+static inline Point grid_to_voxel(const vitrail_GridDesc* grid, float px, float py, float pz) {
+    const Point d = {REAL(px) - REAL(grid->origin.x), REAL(py) - REAL(grid->origin.y), REAL(pz) - REAL(grid->origin.z)};
+    Point v;
+    if (grid->kind == VITRAIL_GRID_BOX) {
+        v.x = d.x / REAL(grid->extent.x);
+        v.y = d.y / REAL(grid->extent.y);
+        v.z = d.z / REAL(grid->extent.z);
+        return v;
+    }
+    const real depth = point_axis(d, grid->axisZ), right = point_axis(d, grid->axisX), up = point_axis(d, grid->axisY);
+    const real nearDepth = REAL(grid->extent.z), farDepth = REAL(grid->extent.w);
+    real halfX = REAL(grid->extent.x), halfY = REAL(grid->extent.y);
+    v.z = (depth - nearDepth) / (farDepth - nearDepth) * REAL(grid->size.z);
+    if (grid->kind == VITRAIL_GRID_PERSPECTIVE) {
+        if (depth <= REAL(0)) {
+            v.x = v.y = REAL(0);
+            return v;
+        }
+        halfX = depth * halfX;
+        halfY = depth * halfY;
+    }
+    v.x = (right / halfX * REAL(0.5f) + REAL(0.5f)) * REAL(grid->size.x);
+    v.y = (up / halfY * REAL(0.5f) + REAL(0.5f)) * REAL(grid->size.y);
+    return v;
+}
+
+#endif

@@ -1,0 +1,17 @@
+// lib/real.cl: the number that decides a voxel: double, or float with -DVITRAIL_SINGLE. Nothing is contracted to fma.
+#ifndef VITRAIL_LIB_REAL
+#define VITRAIL_LIB_REAL
+#pragma OPENCL FP_CONTRACT OFF
+#ifdef VITRAIL_SINGLE
+typedef float real;
+#define REAL_EPSILON 1.1920929e-7f    // 2^-23
+#define REAL_PARALLEL 1e-5f           // slopes beyond 1 / this are treated as vertical
+#else
+#pragma OPENCL EXTENSION cl_khr_fp64 : enable
+typedef double real;
+#define REAL_EPSILON 2.220446049250313e-16
+#define REAL_PARALLEL 1e-10
+#endif
+#define REAL(x) ((real)(x))
+
+#endif

@@ -1,0 +1,64 @@
+// lib/triangle.cl: a triangle from packed arrays, in voxel coordinates.
+#ifndef VITRAIL_LIB_TRIANGLE
+#define VITRAIL_LIB_TRIANGLE
+#include "lib/grid.cl"
+#pragma OPENCL FP_CONTRACT OFF
+
+// What a call counts, in this order, in its status buffer (host/voxelize/prepare.h).
+#define STATUS_TASKS 0
+#define STATUS_DEGENERATE 1
+#define STATUS_SKIPPED 2
+#define STATUS_OUTSIDE 3
+
+typedef struct {
+    Point a, b, c;
+} Triangle;
+
+// The three vertices' offsets in the packed positions. False for an index past the vertices or a vertex that is not finite.
+static inline bool triangle_corners(global const float* positions, global const uint* indices, uint vertexCount, uint triangle, uint corner[3]) {
+    bool good = true;
+    for (int k = 0; k < 3; ++k) {
+        const uint i = indices[3 * (size_t)triangle + k];
+        good = good && i < vertexCount;
+        corner[k] = good ? i : 0;
+        const size_t at = 3 * (size_t)corner[k];
+        good = good && isfinite(positions[at]) && isfinite(positions[at + 1]) && isfinite(positions[at + 2]);
+    }
+    return good;
+}
+
+static inline Point triangle_vertex(const vitrail_GridDesc* grid, global const float* positions, uint vertex) {
+    const size_t at = 3 * (size_t)vertex;
+    return grid_to_voxel(grid, positions[at], positions[at + 1], positions[at + 2]);
+}
+
+// No area, in this arithmetic.
+static inline bool triangle_degenerate(const Triangle* t) {
+    const real ux = t->b.x - t->a.x, uy = t->b.y - t->a.y, uz = t->b.z - t->a.z;
+    const real vx = t->c.x - t->a.x, vy = t->c.y - t->a.y, vz = t->c.z - t->a.z;
+    return uy * vz == uz * vy && uz * vx == ux * vz && ux * vy == uy * vx;
+}
+
+// Unit normal in world space from the winding; zero for a triangle of no area.
+static inline Point triangle_normal(global const float* p, const uint corner[3]) {
+    const size_t a = 3 * (size_t)corner[0], b = 3 * (size_t)corner[1], c = 3 * (size_t)corner[2];
+    const real ux = REAL(p[b]) - REAL(p[a]), uy = REAL(p[b + 1]) - REAL(p[a + 1]), uz = REAL(p[b + 2]) - REAL(p[a + 2]);
+    const real vx = REAL(p[c]) - REAL(p[a]), vy = REAL(p[c + 1]) - REAL(p[a + 1]), vz = REAL(p[c + 2]) - REAL(p[a + 2]);
+    Point n = {uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx};
+    // Scaled first, so that neither tiny nor huge meshes lose the square.
+    const real scale = fmax(fabs(n.x), fmax(fabs(n.y), fabs(n.z)));
+    if (!(scale > REAL(0))) {
+        n.x = n.y = n.z = REAL(0);
+        return n;
+    }
+    n.x /= scale;
+    n.y /= scale;
+    n.z /= scale;
+    const real length = sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
+    n.x /= length;
+    n.y /= length;
+    n.z /= length;
+    return n;
+}
+
+#endif

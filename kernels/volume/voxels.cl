@@ -1,0 +1,47 @@
+// volume/voxels.cl: rank directory, occupancy mip and resolved channels of occupancy bits (vitrail/volume/voxels.h).
+#include "layout/grid.h"
+#include "lib/range.cl"
+#pragma OPENCL FP_CONTRACT OFF
+#define RANK_CHUNK 256  // rank groups a chunk; SCAN_CHUNK of core/scan.cl
+
+// rank[g] = occupied cells before group g within its chunk; sums[chunk] = the chunk's. core/scan.cl completes the prefix sum.
+kernel void voxels_rank_chunks(global const uint* bits, global uint* rank, global uint* sums, ulong groups, ulong count, uint perItem) {
+    FOR_RANGE(chunk, count, perItem) {
+        const size_t first = chunk * RANK_CHUNK, last = min(first + RANK_CHUNK, (size_t)groups);
+        uint sum = 0;
+        for (size_t g = first; g < last; ++g) {
+            rank[g] = sum;
+            for (uint w = 0; w < VITRAIL_WORDS_PER_RANK; ++w) sum += popcount(bits[g * VITRAIL_WORDS_PER_RANK + w]);
+        }
+        sums[chunk] = sum;
+    }
+}
+
+// mip[tile] bit b: slices 8b to 8b+7 of the tile hold a voxel.
+kernel void voxels_mip(global const uint* bits, global uchar* mip, ulong count, uint perItem) {
+    FOR_RANGE(tile, count, perItem) {
+        uint w = 0;
+        for (uint i = 0; i < VITRAIL_WORDS_PER_TILE; ++i) w |= bits[tile * VITRAIL_WORDS_PER_TILE + i];
+        mip[tile] = (uchar)(((w & 0xffu) != 0u ? 1u : 0u) | ((w & 0xff00u) != 0u ? 2u : 0u) | ((w & 0xff0000u) != 0u ? 4u : 0u) |
+                            ((w & 0xff000000u) != 0u ? 8u : 0u));
+    }
+}
+
+// Octahedral code of a sum of normals, two signed 16-bit coordinates; 0 where the sum vanishes.
+kernel void voxels_normals(global const long* sums, global uint* normals, ulong count, uint perItem) {
+    FOR_RANGE(i, count, perItem) {
+        const float x = (float)sums[3 * i], y = (float)sums[3 * i + 1], z = (float)sums[3 * i + 2];
+        const float all = fabs(x) + fabs(y) + fabs(z);
+        uint code = 0u;
+        if (all > 0.0f) {
+            float u = x / all, v = y / all;
+            if (z < 0.0f) {
+                const float foldU = (1.0f - fabs(v)) * (u < 0.0f ? -1.0f : 1.0f);
+                v = (1.0f - fabs(u)) * (v < 0.0f ? -1.0f : 1.0f);
+                u = foldU;
+            }
+            code = ((uint)(int)rint(u * 32767.0f) & 0xffffu) | (((uint)(int)rint(v * 32767.0f) & 0xffffu) << 16);
+        }
+        normals[i] = code;
+    }
+}

@@ -1,0 +1,134 @@
+// voxelize/conservative.cl: every cell that a triangle touches (vitrail/voxelize/conservative.h). Triangles
+// over more than BIG_COLUMNS columns leave blocks of columns as tasks for a second kernel, so that no work-group waits for one of them.
+#include "lib/channels.cl"
+#include "lib/column_run.cl"
+#include "lib/range.cl"
+#pragma OPENCL FP_CONTRACT OFF
+
+#define BIG_COLUMNS 1024
+#define BLOCK 32  // columns along the edge of a task
+
+// Calls for every run of touched cells in columns [xLeast, xMost] x [yLeast, yMost]: ORs its bits, or adds to the channels.
+static inline void conservative_columns(const vitrail_GridDesc* grid, const Runs* runs, int xLeast, int xMost, int yLeast, int yMost,
+                                 global uint* bits, const Channels* channels, const long normal[3], uint material,
+                                        uint triangle) {
+    for (int y = yLeast; y <= yMost; ++y) {
+        int xFirst = xLeast, xLast = xMost;
+        const real row = REAL(y - runs->yFirst);
+        real rowLow = REAL(0), rowHigh = REAL(runs->zLast - runs->zFirst);
+        if (!runs->exact) {
+            run_row(runs, y, xLeast, xMost, &xFirst, &xLast);
+            rowLow = fmax(rowLow, run_low(&runs->zOfY, row));
+            rowHigh = fmin(rowHigh, run_high(&runs->zOfY, row));
+        }
+        const real planeLow = runs->planeY * row + runs->planeLow, planeHigh = runs->planeY * row + runs->planeHigh;
+        for (int x = xFirst; x <= xLast; ++x) {
+            int zFirst = runs->zFirst, zLast = runs->zLast;
+            if (!runs->exact) {
+                const real column = REAL(x - runs->xFirst);
+                const real low = fmax(fmax(rowLow, runs->planeX * column + planeLow), run_low(&runs->zOfX, column));
+                const real high = fmin(fmin(rowHigh, runs->planeX * column + planeHigh), run_high(&runs->zOfX, column));
+                zFirst = (int)ceil(low) + runs->zFirst;
+                zLast = (int)floor(high) + runs->zFirst;
+                if (zFirst > zLast) continue;
+            }
+            const size_t word = bits_column(grid, (uint)x, (uint)y);
+            if (!channels)
+                bits_set_run(bits, word, (uint)zFirst, (uint)zLast);
+            else
+                for (int z = zFirst; z <= zLast; ++z)
+                    channels_add(channels, word + (size_t)(z >> 5) * VITRAIL_WORDS_PER_TILE, (uint)z & 31u, normal, material,
+                                 triangle);
+        }
+    }
+}
+
+// One triangle, or one block of a big one (block >= 0). Returns without marking when it is not usable.
+static inline void conservative_triangle(const vitrail_GridDesc* grid, global const float* positions, global const uint* indices,
+                                  uint vertexCount, uint triangle, int block, global uint* bits, const Channels* channels,
+                                  global const uint* materials, global uint2* tasks, uint taskCapacity, global uint* status) {
+    uint corner[3];
+    const bool counting = block < 0 && !channels;
+    if (!triangle_corners(positions, indices, vertexCount, triangle, corner)) {
+        if (counting) atomic_inc(status + STATUS_SKIPPED);
+        return;
+    }
+    const Triangle t = {triangle_vertex(grid, positions, corner[0]), triangle_vertex(grid, positions, corner[1]),
+                        triangle_vertex(grid, positions, corner[2])};
+    const real delta = run_delta(grid);
+    Runs runs;
+    if (!run_box(grid, &t, delta, &runs)) {
+        if (counting) atomic_inc(status + STATUS_OUTSIDE);
+        return;
+    }
+    long normal[3] = {0, 0, 0};
+    uint material = 0;
+    if (channels) {
+        if (channels->normalSum) channels_normal(triangle_normal(positions, corner), normal);
+        if (channels->material && materials) material = materials[triangle];
+    } else if (counting && triangle_degenerate(&t)) {
+        atomic_inc(status + STATUS_DEGENERATE);
+    }
+    const int blocksX = (runs.xLast - runs.xFirst) / BLOCK + 1, blocksY = (runs.yLast - runs.yFirst) / BLOCK + 1;
+    int xLeast = runs.xFirst, xMost = runs.xLast, yLeast = runs.yFirst, yMost = runs.yLast;
+    if (block >= 0) {
+        xLeast += block % blocksX * BLOCK;
+        yLeast += block / blocksX * BLOCK;
+        xMost = min(xMost, xLeast + BLOCK - 1);
+        yMost = min(yMost, yLeast + BLOCK - 1);
+    } else if ((xMost - xLeast + 1) * (yMost - yLeast + 1) > BIG_COLUMNS) {
+        const uint count = (uint)(blocksX * blocksY);
+        // A list that is full is no error: the triangle is then done here.
+        const uint slot = atomic_add(status + STATUS_TASKS, count);
+        if (slot < taskCapacity && count <= taskCapacity - slot) {
+            for (uint i = 0; i < count; ++i) tasks[slot + i] = (uint2)(triangle, i);
+            return;
+        }
+        for (uint i = slot; i < taskCapacity && i - slot < count; ++i) tasks[i] = (uint2)(0xffffffffu, 0u);
+    }
+    run_bounds(&t, delta, &runs);
+    conservative_columns(grid, &runs, xLeast, xMost, yLeast, yMost, bits, channels, normal, material, triangle);
+}
+
+kernel void conservative_bits(const vitrail_GridDesc grid, global const float* positions, global const uint* indices, uint vertexCount,
+                              uint first, global uint* bits, global uint2* tasks, uint taskCapacity, global uint* status, ulong count,
+                              uint perItem) {
+    FOR_RANGE(i, count, perItem)
+        conservative_triangle(&grid, positions, indices, vertexCount, first + (uint)i, -1, bits, 0, 0, tasks, taskCapacity, status);
+}
+
+// Blocks of big triangles, shared out over `groups` work-items of local size 1.
+kernel void conservative_bits_tasks(const vitrail_GridDesc grid, global const float* positions, global const uint* indices,
+                                    uint vertexCount, global uint* bits, global uint2* tasks, uint taskCapacity, global uint* status,
+                                    uint groups) {
+    const uint count = min(status[STATUS_TASKS], taskCapacity);
+    for (uint i = (uint)get_global_id(0); i < count; i += groups) {
+        const uint2 task = tasks[i];
+        if (task.x != 0xffffffffu)
+            conservative_triangle(&grid, positions, indices, vertexCount, task.x, (int)task.y, bits, 0, 0, tasks, 0, status);
+    }
+}
+
+kernel void conservative_channels(const vitrail_GridDesc grid, global const float* positions, global const uint* indices,
+                                  uint vertexCount, uint first, global const uint* bits, global const uint* rank,
+                                  global uint* counts, global long* normalSums, global uint* materialIds,
+                                  global const uint* materials, global uint2* tasks, uint taskCapacity, global uint* status,
+                                  ulong count, uint perItem) {
+    const Channels channels = {bits, rank, counts, normalSums, materialIds, 0, 0};
+    FOR_RANGE(i, count, perItem)
+        conservative_triangle(&grid, positions, indices, vertexCount, first + (uint)i, -1, 0, &channels, materials, tasks, taskCapacity,
+                              status);
+}
+
+kernel void conservative_channels_tasks(const vitrail_GridDesc grid, global const float* positions, global const uint* indices,
+                                        uint vertexCount, global const uint* bits, global const uint* rank, global uint* counts,
+                                        global long* normalSums, global uint* materialIds, global const uint* materials,
+                                        global uint2* tasks, uint taskCapacity, global uint* status, uint groups) {
+    const uint count = min(status[STATUS_TASKS], taskCapacity);
+    const Channels channels = {bits, rank, counts, normalSums, materialIds, 0, 0};
+    for (uint i = (uint)get_global_id(0); i < count; i += groups) {
+        const uint2 task = tasks[i];
+        if (task.x != 0xffffffffu)
+            conservative_triangle(&grid, positions, indices, vertexCount, task.x, (int)task.y, 0, &channels, materials, tasks, 0, status);
+    }
+}

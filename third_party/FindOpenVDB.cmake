@@ -1,0 +1,31 @@
+# Finds OpenVDB's headers and library and names them OpenVDB::openvdb. OpenVDB's own find module lies elsewhere on every
+# distribution and asks for all that a build of OpenVDB itself needs (Blosc, Boost.Iostreams, log4cplus); its user needs less.
+find_path(OpenVDB_INCLUDE_DIR openvdb/openvdb.h)
+find_library(OpenVDB_LIBRARY openvdb)
+find_path(OpenVDB_BOOST_INCLUDE_DIR boost/any.hpp)
+find_package(TBB CONFIG QUIET)
+
+set(OpenVDB_VERSION "")
+if(OpenVDB_INCLUDE_DIR)
+  file(STRINGS ${OpenVDB_INCLUDE_DIR}/openvdb/version.h lines REGEX "define OPENVDB_LIBRARY_(MAJOR|MINOR|PATCH)_VERSION_NUMBER")
+  string(REGEX MATCHALL "[0-9]+" numbers "${lines}")
+  list(JOIN numbers "." OpenVDB_VERSION)
+endif()
+set(needed OpenVDB_LIBRARY OpenVDB_INCLUDE_DIR TBB_FOUND)
+# OpenVDB 12 dropped Boost.
+if(OpenVDB_VERSION VERSION_LESS 12)
+  list(APPEND needed OpenVDB_BOOST_INCLUDE_DIR)
+endif()
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(OpenVDB REQUIRED_VARS ${needed} VERSION_VAR OpenVDB_VERSION)
+mark_as_advanced(OpenVDB_INCLUDE_DIR OpenVDB_LIBRARY OpenVDB_BOOST_INCLUDE_DIR)
+
+if(OpenVDB_FOUND AND NOT TARGET OpenVDB::openvdb)
+  add_library(OpenVDB::openvdb UNKNOWN IMPORTED)
+  set_target_properties(OpenVDB::openvdb PROPERTIES IMPORTED_LOCATION "${OpenVDB_LIBRARY}")
+  target_include_directories(OpenVDB::openvdb INTERFACE ${OpenVDB_INCLUDE_DIR})
+  if(OpenVDB_BOOST_INCLUDE_DIR)
+    target_include_directories(OpenVDB::openvdb INTERFACE ${OpenVDB_BOOST_INCLUDE_DIR})
+  endif()
+  target_link_libraries(OpenVDB::openvdb INTERFACE TBB::tbb)
+endif()
