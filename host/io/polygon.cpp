@@ -52,7 +52,7 @@ class EarClipper {
 public:
     EarClipper(const std::vector<Point>& points, std::vector<std::uint32_t>& triangles)
         : p_(points), triangles_(triangles), next_(points.size()), previous_(points.size()), left_(points.size()),
-          budget_(std::uint64_t(10000) * points.size()) {
+          budget_(kTestsPerCorner * points.size()) {
         const auto n = static_cast<std::uint32_t>(points.size());
         for (std::uint32_t i = 0; i < n; ++i) {
             next_[i] = i + 1 == n ? 0 : i + 1;
@@ -87,11 +87,13 @@ public:
             }
         }
         emit(corner);
-        return Cut::whole;
+        return turn(p_[previous_[corner]], p_[corner], p_[next_[corner]]) >= 0 ? Cut::whole : Cut::forced;
     }
 
 private:
     static constexpr std::uint32_t kGone = ~std::uint32_t(0);
+    // Enough for any polygon of 8000 corners whose ears are found at the first try; bounds what a hostile file can cost.
+    static constexpr std::uint64_t kTestsPerCorner = 4000;
 
     void emit(std::uint32_t corner) { triangles_.insert(triangles_.end(), {previous_[corner], corner, next_[corner]}); }
 
