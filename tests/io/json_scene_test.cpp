@@ -2,7 +2,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
+#include <iterator>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -142,6 +142,35 @@ TEST(JsonScene, FilesBringTheirMaterialsAndPictures) {
 
     savePicture(folder / "sky.exr", Picture(4, 4, Float4(2.0f)));
     EXPECT_THROW(read(text, folder), Error) << "a map is twice as wide as high";
+    std::filesystem::remove_all(folder);
+}
+
+// The example of host/io/README.md, with small files in the places of those that it names.
+TEST(JsonScene, TheExampleOfTheReadme) {
+    const std::filesystem::path readme = std::filesystem::path(__FILE__).parent_path() / "../../host/io/README.md";
+    std::ifstream in(readme);
+    if (!in) GTEST_SKIP() << "the sources do not lie where they were compiled";
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    const std::size_t start = text.find("```json\n") + 8, end = text.find("```", start);
+    ASSERT_LT(end, text.size());
+
+    const auto folder = std::filesystem::temp_directory_path() / ("vitrail_readme_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder);
+    savePicture(folder / "oak.png", Picture(2, 2, Float4(1.0f)));
+    // A flat picture of 2 x 1 pixels.
+    std::ofstream(folder / "studio.hdr", std::ios::binary) << "#?RADIANCE\n\n-Y 1 +X 2\n" << "\x80\x80\x80\x80\x40\x40\x80\x80";
+    std::ofstream(folder / "bottle.ply") << "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                                            "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                                            "0 0 0\n1 0 0\n0 0 100\n3 0 1 2\n";
+    const Scene scene = read(text.substr(start, end - start), folder);
+    EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
+    ASSERT_EQ(scene.materials.size(), 2u);
+    EXPECT_EQ(scene.materials[0].indexOfRefraction, 1.52f);
+    EXPECT_EQ(scene.materials[1].baseColourTexture, 0);
+    EXPECT_EQ(scene.environment.map.at(0, 0), Float4(0.5f, 0.5f, 0.5f, 1.0f));
+    ASSERT_TRUE(scene.camera);
+    // A hundredth of (0, 0, 100), turned from z up to y up, half a unit higher.
+    EXPECT_NEAR(glm::length(scene.mesh.positions[2] - Float3(0, 1.5f, 0)), 0.0f, 1e-6f);
     std::filesystem::remove_all(folder);
 }
 

@@ -94,7 +94,7 @@ protected:
     std::filesystem::path folder_;
 };
 
-#ifdef VITRAIL_TEST_VDB
+#ifdef VITRAIL_HAS_VDB
 const std::vector<std::string> kEndings = {".npy", ".raw", ".vox", ".vdb"};
 #else
 const std::vector<std::string> kEndings = {".npy", ".raw", ".vox"};
@@ -432,7 +432,7 @@ TEST_F(VoxelFiles, PlyHasOuterFacesOnly) {
 
 // ---- OpenVDB ----
 
-#ifdef VITRAIL_TEST_VDB
+#ifdef VITRAIL_HAS_VDB
 TEST_F(VoxelFiles, VdbIsPlacedByItsTransform) {
     const VoxelBits voxels = speckled({5, 7, 33});
     saveVoxels(folder_ / "a.vdb", voxels);
