@@ -4,7 +4,7 @@
 #include <vitrail/vitrail.h>
 
 int main() {
-    const vitrail::Device device = vitrail::Device::select();
+    vitrail::Device device = vitrail::Device::select();
     vitrail::Queue queue(device);
     const vitrail::Mesh mesh = vitrail::makeShape("torus");
     const vitrail::Grid grid = vitrail::Grid::fit(mesh.bounds(), 64);
