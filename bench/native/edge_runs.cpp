@@ -1,13 +1,14 @@
-// Schwarz & Seidel 2010, "Fast Parallel Surface and Solid Voxelization on GPUs", as rows and runs. A cell touches a triangle if
-// their boxes, the plane and the three projections (xy, zy, zx; three edges each) overlap. For a row of cells each edge of xy
-// bounds x on both sides by a linear function of y; likewise zy bounds z for a row, zx bounds z for a column, and the plane
-// bounds z for a cell of xy. So a column's cells are one run from the largest lower to the least upper bound, set by whole words,
-// eight columns at a time. The bounds take the minimum and maximum over all three vertices, so they hold for slivers, segments
-// and points too, whatever the rounding of a slope: an error can only let a cell in by the sliver's width. Work: vertices to
-// voxel coordinates; triangles into slabs of y (rows of tiles); slabs to threads, which clear and fill each without atomics.
-// Triangles are set up eight at a time in SIMD lanes (GCC's and clang's vectors). Cost: about 50 cycles a triangle and slab to
-// set up, then 15 to 20 a row of eight columns and word. Limits: doubles, so exact but for cells whose separation is within
-// rounding; a triangle is set up again in each slab it reaches.
+// Schwarz & Seidel 2010, "Fast Parallel Surface and Solid Voxelization on GPUs", as rows and runs.
+// What: a cell touches a triangle if their boxes, the plane, and the projections to xy, zy and zx (three edges each) overlap.
+// Each edge of xy bounds x, on both sides, by a linear function of y; zy so bounds z for a row of cells, zx bounds z for a column
+// and the plane bounds z for a cell of xy. A column's cells are therefore one run, from the largest lower to the least upper
+// bound, and are set by whole words, eight columns at a time. A box of one layer needs one projection and no plane. How: vertices
+// to voxel coordinates; triangles into slabs of y (rows of tiles) by each thread for itself; slabs to threads, which clear and
+// fill them without atomics. Eight triangles are set up at a time, one a lane (vectors of GCC and clang). Cost: for triangles as
+// small as a cell about 60 ns each on one thread, with 13 cells each about twice that; then the clear. A triangle is set up again
+// in each slab it reaches. Limits: exact but for cells whose separation is within the rounding of doubles. A bound is taken over
+// all three vertices, so slivers, segments and points lose no cell, however their slopes are rounded; a sliver gains none further
+// off than its width.
 #include "edge_runs.h"
 
 #include <algorithm>
@@ -22,19 +23,20 @@ namespace {
 using Lanes [[gnu::vector_size(64)]] = double;
 using Ints [[gnu::vector_size(32)]] = std::int32_t;
 using Words [[gnu::vector_size(32)]] = std::uint32_t;
+using Row [[gnu::vector_size(32), gnu::may_alias]] = std::uint32_t;  // eight columns in memory
 
 constexpr Lanes iota{0, 1, 2, 3, 4, 5, 6, 7};
 constexpr Ints iotaInts{0, 1, 2, 3, 4, 5, 6, 7};
 
 template <class V>
-V least(V a, V b) {
+V least(const V& a, const V& b) {
     return a < b ? a : b;
 }
 template <class V>
-V most(V a, V b) {
+V most(const V& a, const V& b) {
     return a > b ? a : b;
 }
-Ints toInts(Lanes v) { return __builtin_convertvector(v, Ints); }
+Ints toInts(const Lanes& v) { return __builtin_convertvector(v, Ints); }
 
 // How one coordinate is bounded along another by the three edges of a projection: at cell c, edge e admits the cells from
 // slope * c + low to slope * c + high, the latter exclusive.
@@ -52,7 +54,7 @@ struct Bounds {
         }
     }
     // The run of triangle `lane` at eight cells, within [first, end).
-    void runs(int lane, Lanes cells, std::int32_t first, std::int32_t end, Ints& lows, Ints& ends) const {
+    void runs(int lane, const Lanes& cells, std::int32_t first, std::int32_t end, Ints& lows, Ints& ends) const {
         Lanes l = Lanes{} + double(first), h = Lanes{} + double(end);
         for (int e = 0; e < 3; ++e) {
             const Lanes along = slope[e][lane] * cells;
@@ -64,7 +66,7 @@ struct Bounds {
     }
 };
 
-Lanes inverseOrZero(Lanes v) { return v != 0.0 ? 1.0 / v : Lanes{}; }
+Lanes inverseOrZero(const Lanes& v) { return v != 0.0 ? 1.0 / v : Lanes{}; }
 
 // Eight triangles, set up together.
 struct Batch {
@@ -81,8 +83,8 @@ struct Batch {
             }
         for (int a = 0; a < 3; ++a) {
             const Lanes low = least(least(v[a][0], v[a][1]), v[a][2]), high = most(most(v[a][0], v[a][1]), v[a][2]);
-            first[a] = toInts(most(low, Lanes{}));
-            end[a] = toInts(least(high, Lanes{} + double(size[a] - 1))) + 1;
+            first[a] = toInts(least(most(low, Lanes{}), Lanes{} + double(size[a])));
+            end[a] = toInts(most(least(high, Lanes{} + double(size[a] - 1)) + 1.0, Lanes{}));
         }
         Lanes inverseX[3], inverseY[3];
         for (int e = 0; e < 3; ++e) {
@@ -107,12 +109,12 @@ struct Batch {
 };
 
 // ORs the bits [first, end) of the word that starts at slice `base` into eight columns.
-void setRuns(std::uint32_t* words, Ints first, Ints end, std::int32_t base) {
-    first = most(first - base, Ints{});
-    end = least(end - base, Ints{} + 32);
+void setRuns(std::uint32_t* words, const Ints& begin, const Ints& finish, std::int32_t base) {
+    const Ints first = most(begin - base, Ints{});
+    const Ints end = least(finish - base, Ints{} + 32);
     const Words ones = ~Words{};
     const Words mask = (ones << Words(first & 31)) & (ones >> Words(-end & 31)) & Words(first < end);
-    *reinterpret_cast<Words*>(words) |= mask;
+    *reinterpret_cast<Row*>(words) |= mask;
 }
 
 // The part of triangle `lane` in the layers [beginY, endY).
@@ -138,7 +140,7 @@ void fill(const Batch& batch, int lane, std::int32_t beginY, std::int32_t endY, 
             for (std::int32_t y = std::max(y0, group); y < std::min(y1, group + 8); ++y)
                 for (std::int32_t t = begin[y & 7] >> 3; t <= (end[y & 7] - 1) >> 3; ++t) {
                     const Ints x = iotaInts + 8 * t;
-                    *reinterpret_cast<Words*>(wordsOf(t, y) + (z0 >> 5) * 64) |=
+                    *reinterpret_cast<Row*>(wordsOf(t, y) + (z0 >> 5) * 64) |=
                         Words((x >= begin[y & 7]) & (x < end[y & 7])) & (1u << (z0 & 31));
                 }
         }
@@ -220,7 +222,7 @@ void voxelizeEdgeRuns(std::span<const float> xyz, std::span<const std::uint32_t>
     threads = std::max(threads, 1u);
     const std::size_t points = xyz.size() / 3, triangles = indices.size() / 3, rows = out.tilesY();
     int shift = 0;  // a slab is 2^shift rows of tiles
-    while ((rows >> (shift + 1)) >= 16 * threads) ++shift;
+    while ((rows >> (shift + 1)) >= 8 * threads) ++shift;
     const double height = grid.size[1];
     const std::size_t slabs = ((rows - 1) >> shift) + 1;
     scratch.points.resize(points);

@@ -102,6 +102,26 @@ Mesh degenerate() {
     return mesh;
 }
 
+// Small triangles less than a cell beside the faces of the cube [-1.01, 1.01]^3, and some beside it and far away.
+Mesh beside() {
+    Mesh mesh{"beside the grid", {}, {}};
+    std::mt19937 random(8);
+    const auto unit = [&] { return double(random()) / 4294967296.0; };
+    for (int i = 0; i < 3000; ++i) {
+        std::array<float, 9> p;
+        const int axis = i % 3;
+        const double side = i % 2 ? 1.011 : -1.011, x = 1.9 * unit() - 0.95, y = 1.9 * unit() - 0.95,
+                     far = i % 100 ? 0.012 : 3e38;
+        for (int k = 0; k < 3; ++k) {
+            p[3 * k + axis] = float(side + unit() * (side > 0 ? far : -far));
+            p[3 * k + (axis + 1) % 3] = float(x + 0.02 * unit());
+            p[3 * k + (axis + 2) % 3] = float(y + 0.02 * unit());
+        }
+        mesh.triangle(p);
+    }
+    return mesh;
+}
+
 // By how many cells the triangle and the closed cell are apart along the axis that tells most; negative if they overlap.
 double separation(const Point* v, const Point& cell) {
     Point edge[3], axes[13];
@@ -158,7 +178,7 @@ int compare(const Mesh& mesh, const Grid& grid, unsigned threads, Bits& first, B
                     ++ties;
                     continue;
                 }
-                if (++wrong <= 5)
+                if (++wrong <= 3 && !quiet)
                     std::printf(
                         "%s, %u x %u x %u, %u threads: cell (%u, %u, %u), separation %g: separating axis %d, edge runs %d\n",
                         mesh.name.c_str(), size[0], size[1], size[2], threads, x, y, z, s, a, b);
@@ -191,6 +211,7 @@ int main() {
         soup("huge triangles", 40, 50.0, 1.0, 6),
         soup("huge slivers", 300, 20.0, 1e-3, 7),
         degenerate(),
+        beside(),
     };
     const Grid grids[] = {
         {{-1.01f, -1.01f, -1.01f}, 2.02f / 16, {16, 16, 16}},

@@ -47,6 +47,10 @@ inline constexpr Method kMethods[] = {
      Role::product,
      {MethodOption{"safetyFactor", 1.0, 0.25, 16.0, "1", "gamma of eq. 1; higher misses less and costs about its square"}, kNoOption,
       kNoOption}},
+    {"planes", Family::glass, "Chang et al. 2013, section 5.2, with exact steps", Guarantee::none,
+     "Every crossing from one plane and the gradient of its normal in a voxel; walls thinner than a voxel are lost.", false, false,
+     Role::product,
+     {MethodOption{"resolution", 256, 8, 2048, "voxels", "voxels along the longest axis"}, kNoOption, kNoOption}},
 };
 
 constexpr std::span<const Method> methods() { return kMethods; }

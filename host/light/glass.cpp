@@ -1,0 +1,176 @@
+#include <vitrail/light/glass.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <vitrail/layout/shading.h>
+#include <vitrail/methods.h>
+#include <vitrail/raster/gbuffer.h>
+#include <vitrail/voxelize/surface.h>
+
+#include "light/image_state.h"
+#include "voxelize/prepare.h"
+
+namespace vitrail {
+inline namespace v0 {
+
+namespace {
+
+vitrail_float4 with(Float3 v, float w = 0.0f) { return {v.x, v.y, v.z, w}; }
+
+/// Cosine-weighted mean radiance of the upper hemisphere: the irradiance on a surface that faces up, over pi. Zenith weighs most.
+Float3 ambientOf(const Environment& environment) {
+    Float3 sum(0.0f);
+    if (environment.map.empty()) {
+        // Mean of horizon (1 - sqrt(c)) + zenith sqrt(c) over the hemisphere with weight 2 c dc: the zenith's share is 4/5.
+        sum = environment.horizon * 0.2f + environment.zenith * 0.8f;
+    } else {
+        const Picture& map = environment.map;
+        double total = 0;
+        glm::dvec3 light(0.0);
+        for (std::uint32_t y = 0; y < map.height / 2; ++y) {
+            const double latitude = (y + 0.5) / map.height * 3.14159265358979;
+            const double weight = std::cos(latitude) * std::sin(latitude);
+            for (std::uint32_t x = 0; x < map.width; ++x) {
+                const Float4& p = map.at(x, y);
+                light += weight * glm::dvec3(p.x, p.y, p.z);
+            }
+            total += weight * map.width;
+        }
+        sum = Float3(light / total);
+    }
+    return sum * environment.intensity;
+}
+
+vitrail_LightDesc describeLight(const Scene& scene, const Ground& ground, const Bounds& bounds) {
+    const Float3 extent = bounds.high - bounds.low, centre = (bounds.low + bounds.high) * 0.5f;
+    const float diagonal = glm::length(extent);
+    const float length = glm::length(scene.light.toLight);
+    if (!(length > 0) || !std::isfinite(length))
+        throw Error(ErrorCode::badOption, {"light: its direction is zero or not finite", "", "", "a direction from the scene to the light"});
+    const Environment& e = scene.environment;
+    vitrail_LightDesc out{};
+    out.toLight = with(scene.light.toLight / length);
+    out.irradiance = with(scene.light.radiance);
+    out.ambient = with(ambientOf(e), e.intensity);
+    out.zenith = with(e.zenith);
+    out.horizon = with(e.horizon);
+    out.nadir = with(e.nadir);
+    out.ground = {centre.x, ground.automatic ? bounds.low.y - 1e-3f * diagonal : ground.height, centre.z, ground.visible ? 6.0f * diagonal : 0.0f};
+    out.groundLight = {0.62f, 0.30f, diagonal / 7.0f, glm::radians(e.yawDegrees)};
+    out.mapWidth = e.map.width;
+    out.mapHeight = e.map.height;
+    return out;
+}
+
+template <class Effect>
+Image shadeVoxels(Queue& queue, const Scene& scene, const Camera& camera, const Effect& effect, const char* name, std::uint32_t which) {
+    detail::checkOptions(effect.method);
+    detail::checkSamples(name, effect.samples);
+    if (scene.materials.empty()) throw Error(ErrorCode::badInput, {"the scene has no materials", "", "", "one material, such as defaultGlass(bounds)"});
+    for (const std::uint32_t material : scene.mesh.materials)
+        if (material >= scene.materials.size())
+            throw Error(ErrorCode::badInput, {"a triangle names material " + std::to_string(material) + " of " + std::to_string(scene.materials.size()), "", "",
+                                              "materials that index the scene's list"});
+    const Bounds bounds = scene.mesh.bounds();
+    const Grid grid = Grid::fit(bounds, static_cast<std::uint32_t>(effect.method.resolution));
+    Camera sampled = camera;
+    sampled.width *= effect.samples;
+    sampled.height *= effect.samples;
+
+    detail::Call call(queue, std::string("shading ") + name + " of " + std::to_string(scene.mesh.triangleCount()) + " triangles");
+    Workspace& workspace = queue.workspace();
+    const std::uint64_t samples = static_cast<std::uint64_t>(sampled.width) * sampled.height;
+    Buffer<float> seen = workspace.take<float>(4 * samples, "samples of a picture");
+    const DeviceMesh mesh(queue, scene.mesh.view());
+    const SurfaceVoxels voxels = voxelizeSurface(queue, mesh, grid);
+    const GBuffer gbuffer = rasterize(queue, mesh, sampled);
+
+    std::vector<vitrail_MaterialDesc> table;
+    for (const Material& m : scene.materials)
+        table.push_back({with(m.baseColour, m.transmission), with(m.absorption(), m.indexOfRefraction)});
+    Buffer<vitrail_MaterialDesc> materials = workspace.take<vitrail_MaterialDesc>(table.size(), "materials");
+    call.upload(materials, table.data(), table.size());
+    const vitrail_LightDesc light = describeLight(scene, effect.ground, bounds);
+    Buffer<float> map;
+    if (which == 0 && !scene.environment.map.empty()) {
+        map = workspace.take<float>(4 * scene.environment.map.pixels.size(), "environment map");
+        call.upload(map, &scene.environment.map.pixels[0].x, 4 * scene.environment.map.pixels.size());
+    }
+    Buffer<std::uint32_t> status = workspace.take<std::uint32_t>(detail::kLightStatusWords, "counts");
+    call.fill(status, 0);
+    // A walk crosses at most this many cells on four straight ways through the grid; a march past it is ended and counted.
+    const Uint3 size = grid.size();
+    const auto bound = static_cast<std::int32_t>(4 * (size.x + size.y + size.z));
+    // Rows in bands, so that the callback is asked while the rays run.
+    call.step("glass: rays", 0.5);
+    call.launchRange(detail::Program{"light", ""}, "glass_shade", samples, grid.desc(), gbuffer.camera, light, which, mesh.positions(), mesh.indices(),
+                     mesh.normals(), mesh.materials(), gbuffer.triangle, voxels.voxels.bits(), voxels.voxels.rank(), voxels.voxels.mip(),
+                     voxels.surface, voxels.voxels.materialBuffer(), materials, map, bound, status, seen);
+    auto image = detail::resolveSamples(call, seen, camera.width, camera.height, effect.samples);
+    image->status = std::move(status);
+    image->counted.effect = name;
+    image->counted.method = effect.method.name;
+    image->counted.grid = size;
+    image->counted.triangles = mesh.triangleCount();
+    image->counted.occupied = voxels.voxels.occupied();
+    return Image(std::move(image));
+}
+
+}  // namespace
+
+Image shade(Queue& queue, const Scene& scene, const Camera& camera, const Glass& effect) {
+    return shadeVoxels(queue, scene, camera, effect, "glass", 0);
+}
+
+Image shade(Queue& queue, const Scene& scene, const Camera& camera, const Shadow& effect) {
+    return shadeVoxels(queue, scene, camera, effect, "shadow", 1);
+}
+
+DirectionalLight sunOf(const Environment& environment) {
+    const Picture& map = environment.map;
+    if (map.empty()) return {};
+    // Mean luminance of 2-degree cells above the horizon; the brightest is the sun's, its neighbourhood of 10 degrees its light.
+    const double pi = 3.14159265358979;
+    const auto direction = [&](double u, double v) {
+        const double longitude = (u - 0.5) * 2 * pi - glm::radians(static_cast<double>(environment.yawDegrees)), latitude = v * pi;
+        return glm::dvec3(std::cos(longitude) * std::sin(latitude), std::cos(latitude), std::sin(longitude) * std::sin(latitude));
+    };
+    const int columns = 180, rows = 45;
+    std::vector<double> cells(static_cast<std::size_t>(columns) * rows, 0.0), weights(cells.size(), 0.0);
+    for (std::uint32_t y = 0; y < map.height / 2; ++y)
+        for (std::uint32_t x = 0; x < map.width; ++x) {
+            const Float4& p = map.at(x, y);
+            const double weight = std::sin((y + 0.5) / map.height * pi);
+            const std::size_t cell = static_cast<std::size_t>(std::min<std::uint64_t>(rows - 1, 2ull * y * rows / map.height)) * columns +
+                                     static_cast<std::size_t>(static_cast<std::uint64_t>(x) * columns / map.width);
+            cells[cell] += weight * (0.2126 * p.x + 0.7152 * p.y + 0.0722 * p.z);
+            weights[cell] += weight;
+        }
+    std::size_t best = 0;
+    double bestValue = -1;
+    for (std::size_t i = 0; i < cells.size(); ++i)
+        if (weights[i] > 0 && cells[i] / weights[i] > bestValue) {
+            best = i;
+            bestValue = cells[i] / weights[i];
+        }
+    const glm::dvec3 peak = direction((static_cast<double>(best % columns) + 0.5) / columns, (static_cast<double>(best / columns) + 0.5) / (2 * rows));
+    glm::dvec3 light(0.0), mean(0.0);
+    for (std::uint32_t y = 0; y < map.height / 2; ++y)
+        for (std::uint32_t x = 0; x < map.width; ++x) {
+            const double v = (y + 0.5) / map.height;
+            const glm::dvec3 d = direction((x + 0.5) / map.width, v);
+            if (glm::dot(d, peak) < std::cos(glm::radians(10.0))) continue;
+            const Float4& p = map.at(x, y);
+            const double solidAngle = 2 * pi / map.width * pi / map.height * std::sin(v * pi);
+            light += solidAngle * glm::dvec3(p.x, p.y, p.z);
+            mean += solidAngle * (0.2126 * p.x + 0.7152 * p.y + 0.0722 * p.z) * d;
+        }
+    DirectionalLight sun;
+    sun.toLight = Float3(glm::length(mean) > 0 ? glm::normalize(mean) : peak);
+    sun.radiance = Float3(light) * environment.intensity;
+    return sun;
+}
+
+}  // namespace v0
+}  // namespace vitrail
