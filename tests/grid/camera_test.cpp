@@ -41,6 +41,12 @@ TEST(PerspectiveGrid, ColumnsGoThroughTheEye) {
     }
 }
 
+TEST(PerspectiveGrid, PointsAtOrBehindTheEyeAreOutside) {
+    const Grid grid = kPerspective.grid();
+    expectNear(grid.toVoxel({0.5f, 1, 5}), {0, 0, -5}, 0);
+    expectNear(grid.toVoxel({0.5f, 1, 7}), {0, 0, -15}, 0);
+}
+
 TEST(CameraGrid, AxesAreUnitAndRightAngled) {
     const vitrail_GridDesc d = kSlanted.grid().desc();
     const Double3 x(d.axisX.x, d.axisX.y, d.axisX.z), y(d.axisY.x, d.axisY.y, d.axisY.z), z(d.axisZ.x, d.axisZ.y, d.axisZ.z);
