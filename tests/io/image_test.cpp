@@ -145,6 +145,8 @@ TEST_F(Pictures, NoPictureIsAnError) {
     EXPECT_EQ(codeOf(""), ErrorCode::badFile);
     EXPECT_EQ(codeOf("not a picture", "test.txt"), ErrorCode::unsupported);
     EXPECT_THROW(loadPicture(folder_ / "none.png"), Error);
+    // OpenImageIO's reader throws an error of the standard library here.
+    EXPECT_EQ(codeOf("GIF82\n\x80\x40 \x81\x80\x40 \x81\x80\x40 \x81i\x40 \x81", "test.gif"), ErrorCode::badFile);
 }
 
 TEST(Radiance, FlatPixels) {
