@@ -45,8 +45,13 @@ std::string formatOf(std::span<const std::byte> bytes) {
         const char* format;
     };
     using namespace std::string_view_literals;
-    constexpr Mark kMarks[] = {{"\x89PNG\r\n\x1a\n"sv, "png"}, {"\xff\xd8\xff"sv, "jpeg"}, {"#?"sv, "hdr"}, {"\x76\x2f\x31\x01"sv, "openexr"},
-                               {"II*\0"sv, "tiff"},           {"MM\0*"sv, "tiff"},       {"BM"sv, "bmp"}};
+    constexpr Mark kMarks[] = {{"\x89PNG\r\n\x1a\n"sv, "png"},
+                               {"\xff\xd8\xff"sv, "jpeg"},
+                               {"#?"sv, "hdr"},
+                               {"\x76\x2f\x31\x01"sv, "openexr"},
+                               {"II*\0"sv, "tiff"},
+                               {"MM\0*"sv, "tiff"},
+                               {"BM"sv, "bmp"}};
     for (const Mark& mark : kMarks) {
         if (text.starts_with(mark.bytes)) return mark.format;
     }
@@ -119,7 +124,8 @@ Picture readWithOpenImageIO(std::span<const std::byte> bytes, std::string format
     std::unique_ptr<OIIO::ImageInput> input = format.empty() ? nullptr : OIIO::ImageInput::create(format);
     if (!input) {
         reasonOf(nullptr);
-        fail("its first bytes are those of no known format", name, ".hdr, .exr, .png, .jpg, .tif or .webp", ErrorCode::unsupported);
+        fail("its first bytes are those of no known format", name, ".hdr, .exr, .png, .jpg, .tif or .webp",
+             ErrorCode::unsupported);
     }
     if (!input->supports("ioproxy")) {
         fail("the format " + format + " is not read", name, ".hdr, .exr, .png, .jpg, .tif or .webp", ErrorCode::unsupported);
@@ -169,7 +175,8 @@ Picture decode(std::span<const std::byte> bytes, const std::string& name) {
         throw;
     } catch (const std::exception& error) {
         // Some of OpenImageIO's readers let those of the standard library through.
-        fail(std::string("the ") + (format.empty() ? "format's" : format) + " reader gave up: " + error.what(), name, "the whole file");
+        fail(std::string("the ") + (format.empty() ? "format's" : format) + " reader gave up: " + error.what(), name,
+             "the whole file");
     }
 }
 
@@ -250,9 +257,8 @@ void savePicture(const std::filesystem::path& file, const Picture& picture, floa
     OIIO::ImageSpec spec(w, h, channels, OIIO::TypeDesc::UINT8);
     spec.attribute("oiio:UnassociatedAlpha", 1);
     spec.attribute("oiio:ColorSpace", "sRGB");
-    io_detail::writeWhole(file, [&](const std::filesystem::path& path) {
-        write(path, "png", spec, OIIO::TypeDesc::UINT8, values.data(), name);
-    });
+    io_detail::writeWhole(
+        file, [&](const std::filesystem::path& path) { write(path, "png", spec, OIIO::TypeDesc::UINT8, values.data(), name); });
 }
 
 }  // namespace v0
