@@ -170,11 +170,10 @@ Grid Grid::withVoxelSize(float edge, const Bounds& bounds, bool alignToOrigin) {
     Float3 origin = bounds.low;
     Uint3 count;
     for (int i = 0; i < 3; ++i) {
-        // A multiple of the edge that no float holds is rounded to one, downward where it would pass the bounds.
+        // A multiple of the edge that no float holds is rounded to one, which must not pass the bounds.
         if (alignToOrigin) {
             const double face = std::floor(double(bounds.low[i]) / double(edge)) * double(edge);
-            origin[i] = static_cast<float>(face);
-            if (origin[i] > bounds.low[i]) origin[i] = roundedDown(face);
+            origin[i] = std::min(static_cast<float>(face), bounds.low[i]);
         }
         const double cells = std::ceil((double(bounds.high[i]) - double(origin[i])) / double(edge));
         if (!(cells <= kMostCells)) {
@@ -205,13 +204,14 @@ Double3 Grid::toVoxel(Float3 pWorld) const {
     }
     const double right = dot(from, wide(desc_.axisX)), up = dot(from, wide(desc_.axisY)), depth = dot(from, wide(desc_.axisZ));
     double halfX = desc_.extent.x, halfY = desc_.extent.y;
-    const double near = desc_.extent.z, far = desc_.extent.w;
+    const double nearDepth = desc_.extent.z, farDepth = desc_.extent.w;
+    const double z = (depth - nearDepth) / (farDepth - nearDepth) * double(desc_.size.z);
     if (desc_.kind == VITRAIL_GRID_PERSPECTIVE) {
+        if (depth <= 0) return {0.0, 0.0, z};
         halfX = depth * halfX;
         halfY = depth * halfY;
     }
-    return {(right / halfX * 0.5 + 0.5) * double(desc_.size.x), (up / halfY * 0.5 + 0.5) * double(desc_.size.y),
-            (depth - near) / (far - near) * double(desc_.size.z)};
+    return {(right / halfX * 0.5 + 0.5) * double(desc_.size.x), (up / halfY * 0.5 + 0.5) * double(desc_.size.y), z};
 }
 
 Double3 Grid::toWorld(Double3 pVoxel) const {
@@ -220,8 +220,8 @@ Double3 Grid::toWorld(Double3 pVoxel) const {
         const double edge = desc_.extent.x;
         return {origin.x + pVoxel.x * edge, origin.y + pVoxel.y * edge, origin.z + pVoxel.z * edge};
     }
-    const double near = desc_.extent.z, far = desc_.extent.w;
-    const double depth = near + pVoxel.z / desc_.size.z * (far - near);
+    const double nearDepth = desc_.extent.z, farDepth = desc_.extent.w;
+    const double depth = nearDepth + pVoxel.z / desc_.size.z * (farDepth - nearDepth);
     const double spread = desc_.kind == VITRAIL_GRID_PERSPECTIVE ? depth : 1.0;
     const double right = (pVoxel.x / desc_.size.x * 2 - 1) * spread * desc_.extent.x;
     const double up = (pVoxel.y / desc_.size.y * 2 - 1) * spread * desc_.extent.y;

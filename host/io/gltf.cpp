@@ -92,7 +92,7 @@ public:
         std::vector<Placed> placed = chooseScene();
         readMaterials();
         assemble(placed);
-        readTextures();
+        if (!source_.meshOnly) readTextures();
         scene_.name = std::filesystem::path(source_.name).stem().string();
         scene_.mesh.name = scene_.name;
         for (const std::string& repair : scene_.mesh.repairs) warn(repair);

@@ -1,5 +1,4 @@
-// io/image.cpp: pictures through OpenImageIO. Every format that OpenImageIO can read from memory is read from memory, so that a file
-// and a picture inside another file take the same path.
+// io/image.cpp: pictures through OpenImageIO, from memory, so that a file and a picture inside another file take the same path.
 #include <vitrail/io/image.h>
 
 #include <algorithm>
@@ -16,6 +15,7 @@
 
 #include <vitrail/core/error.h>
 
+#include "io/radiance.h"
 #include "io/readers.h"
 
 namespace vitrail {
@@ -23,9 +23,9 @@ inline namespace v0 {
 
 namespace {
 
-constexpr std::uint32_t kMostPixels = 16384;  // along one side
+constexpr long long kMostPixels = 16384;  // along one side
 // No format packs more: deflate at its best leaves a byte for a thousand, of eight one-bit pixels each.
-constexpr std::uint64_t kMostPixelsPerByte = 16384;
+constexpr long long kMostPixelsPerByte = 16384;
 
 [[noreturn]] void fail(const std::string& what, const std::string& name, const std::string& remedy = {},
                        ErrorCode code = ErrorCode::badFile) {
@@ -46,7 +46,7 @@ std::string formatOf(std::span<const std::byte> bytes) {
         const char* format;
     };
     using namespace std::string_view_literals;
-    constexpr Mark kMarks[] = {{"\x89PNG"sv, "png"},    {"\xff\xd8\xff"sv, "jpeg"}, {"#?"sv, "hdr"},     {"\x76\x2f\x31\x01"sv, "openexr"},
+    constexpr Mark kMarks[] = {{"\x89PNG\r\n\x1a\n"sv, "png"},    {"\xff\xd8\xff"sv, "jpeg"}, {"#?"sv, "hdr"},     {"\x76\x2f\x31\x01"sv, "openexr"},
                                {"II*\0"sv, "tiff"},     {"MM\0*"sv, "tiff"},        {"BM"sv, "bmp"},     {"GIF8"sv, "gif"},
                                {"8BPS"sv, "psd"},       {"SDPX"sv, "dpx"},          {"XPDS"sv, "dpx"}};
     for (const Mark& mark : kMarks) {
@@ -54,6 +54,19 @@ std::string formatOf(std::span<const std::byte> bytes) {
     }
     if (text.starts_with("RIFF") && text.substr(0, 12).ends_with("WEBP")) return "webp";
     return {};
+}
+
+// Chunks up to the last, IEND. libpng would tell the terminal of a file that is cut off.
+void expectWholePng(std::span<const std::byte> bytes, const std::string& name) {
+    std::size_t at = 8;
+    while (at < bytes.size() && bytes.size() - at >= 12) {
+        std::size_t length = 0;
+        for (std::size_t i = 0; i < 4; ++i) length = length << 8 | std::to_integer<std::size_t>(bytes[at + i]);
+        if (length > bytes.size() - at - 12) break;
+        if (std::memcmp(&bytes[at + 4], "IEND", 4) == 0) return;
+        at += 12 + length;
+    }
+    fail("a chunk runs past the end, or the last one is missing", name, "the whole file");
 }
 
 float fromSrgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
@@ -95,6 +108,8 @@ std::string reasonOf(OIIO::ImageInput* input) {
 Picture decode(std::span<const std::byte> bytes, const std::string& name) {
     if (bytes.empty()) fail("the file is empty", name);
     std::string format = formatOf(bytes);
+    if (format == "hdr") return io_detail::readRadiance(bytes, name);
+    if (format == "png") expectWholePng(bytes, name);
     if (format.empty()) format = lowerExtension(name);
     std::unique_ptr<OIIO::ImageInput> input = format.empty() ? nullptr : OIIO::ImageInput::create(format);
     if (!input) {
@@ -111,20 +126,11 @@ Picture decode(std::span<const std::byte> bytes, const std::string& name) {
     config.attribute("oiio:UnassociatedAlpha", 1);
     if (!input->open("in_memory." + format, spec, config)) fail(reasonOf(input.get()), name, "the whole file");
 
-    if (spec.width <= 0 || spec.height <= 0 || spec.depth > 1 || spec.nchannels <= 0 || spec.nchannels > 64) {
-        fail("a size of " + std::to_string(spec.width) + " x " + std::to_string(spec.height) + " x " + std::to_string(spec.depth) + ", " +
-                 std::to_string(spec.nchannels) + " channels",
-             name, "a flat picture");
+    io_detail::expectPictureSize(spec.width, spec.height, bytes.size(), name);
+    if (spec.depth > 1 || spec.nchannels <= 0 || spec.nchannels > 64) {
+        fail(std::to_string(spec.nchannels) + " channels, " + std::to_string(spec.depth) + " deep", name, "a flat picture");
     }
     const auto w = static_cast<std::uint32_t>(spec.width), h = static_cast<std::uint32_t>(spec.height);
-    if (w > kMostPixels || h > kMostPixels) {
-        fail(std::to_string(w) + " x " + std::to_string(h) + " pixels, more than " + std::to_string(kMostPixels) + " along a side", name,
-             "a smaller version of it");
-    }
-    if (std::uint64_t(w) * h > bytes.size() * kMostPixelsPerByte) {
-        fail(std::to_string(w) + " x " + std::to_string(h) + " pixels cannot lie in " + std::to_string(bytes.size()) + " bytes", name,
-             "the whole file");
-    }
 
     Picture picture(w, h, Float4(0.0f, 0.0f, 0.0f, 1.0f));
     const int channels = std::min(spec.nchannels, 4);
@@ -157,6 +163,21 @@ void write(const std::filesystem::path& path, const std::string& format, const O
 }
 
 }  // namespace
+
+}  // namespace v0
+
+void io_detail::expectPictureSize(long long width, long long height, std::size_t bytes, const std::string& name) {
+    const std::string size = std::to_string(width) + " x " + std::to_string(height) + " pixels";
+    if (width <= 0 || height <= 0) fail(size, name, "a picture that holds something");
+    if (width > kMostPixels || height > kMostPixels) {
+        fail(size + ", more than " + std::to_string(kMostPixels) + " along a side", name, "a smaller version of it");
+    }
+    if (static_cast<std::size_t>(width * height / kMostPixelsPerByte) > bytes) {
+        fail(size + " cannot lie in " + std::to_string(bytes) + " bytes", name, "the whole file");
+    }
+}
+
+inline namespace v0 {
 
 Picture loadPicture(const std::filesystem::path& file) { return decode(io_detail::readFile(file), file.string()); }
 

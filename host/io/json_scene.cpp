@@ -148,7 +148,7 @@ public:
         if (top.has("camera")) readCamera(top["camera"]);
         if (top.has("light")) readLight(top["light"]);
         if (top.has("environment")) readEnvironment(top["environment"]);
-        readTextures();
+        if (!source_.meshOnly) readTextures();
         return std::move(scene_);
     }
 
@@ -362,7 +362,9 @@ private:
         if (from.has("zenith") || from.has("horizon") || from.has("nadir")) {
             from.fail("a map and the colours of a gradient exclude each other", "environment", "either \"file\" or the colours");
         }
-        to.map = loadPicture(beside(from, "file"));
+        const std::filesystem::path file = beside(from, "file");
+        if (source_.meshOnly) return;
+        to.map = loadPicture(file);
         if (to.map.width != 2 * to.map.height) {
             from.fail("the map has " + std::to_string(to.map.width) + " x " + std::to_string(to.map.height) + " pixels",
                       from.placeOf("file"), "a latitude-longitude map, twice as wide as high");

@@ -52,7 +52,7 @@ class EarClipper {
 public:
     EarClipper(const std::vector<Point>& points, std::vector<std::uint32_t>& triangles)
         : p_(points), triangles_(triangles), next_(points.size()), previous_(points.size()), left_(points.size()),
-          budget_(std::uint64_t(10000) * points.size()) {
+          listed_(points.size()), budget_(kTestsPerCorner * points.size()) {
         const auto n = static_cast<std::uint32_t>(points.size());
         for (std::uint32_t i = 0; i < n; ++i) {
             next_[i] = i + 1 == n ? 0 : i + 1;
@@ -74,7 +74,10 @@ public:
                 next_[before] = after;
                 previous_[after] = before;
                 next_[corner] = kGone;
-                --left_;
+                if (2 * --left_ < listed_) {
+                    std::erase_if(blockers_, [&](std::uint32_t c) { return next_[c] == kGone; });
+                    listed_ = left_;
+                }
                 tried = 0;
                 strict = true;
                 corner = next_[after];  // the neighbour but one keeps triangles from growing into a thin fan
@@ -87,11 +90,13 @@ public:
             }
         }
         emit(corner);
-        return Cut::whole;
+        return turn(p_[previous_[corner]], p_[corner], p_[next_[corner]]) >= 0 ? Cut::whole : Cut::forced;
     }
 
 private:
     static constexpr std::uint32_t kGone = ~std::uint32_t(0);
+    // Enough for any polygon of 8000 corners whose ears are found at the first try; bounds what a hostile file can cost.
+    static constexpr std::uint64_t kTestsPerCorner = 4000;
 
     void emit(std::uint32_t corner) { triangles_.insert(triangles_.end(), {previous_[corner], corner, next_[corner]}); }
 
@@ -106,28 +111,22 @@ private:
         const Point &a = p_[before], &b = p_[corner], &c = p_[after];
         const double area = turn(a, b, c);
         if (strict ? !(area > 0) : !(area >= 0)) return false;
-        std::size_t kept = 0;
-        bool blocked = false;
-        for (std::size_t i = 0; i < blockers_.size(); ++i) {
-            const std::uint32_t other = blockers_[i];
-            if (next_[other] == kGone) continue;
-            blockers_[kept++] = other;
-            if (blocked || other == before || other == corner || other == after) continue;
-            if (budget_ != 0) --budget_;
+        for (const std::uint32_t other : blockers_) {
+            if (budget_ == 0) return false;
+            --budget_;
+            if (next_[other] == kGone || other == before || other == corner || other == after) continue;
             const Point& q = p_[other];
             if (q == a || q == b || q == c) continue;  // a bridge runs through this corner twice
             const double s = turn(a, b, q), t = turn(b, c, q), u = turn(c, a, q);
-            blocked = strict ? s >= 0 && t >= 0 && u >= 0 : s > 0 && t > 0 && u > 0;
-            if (blocked && kept == i + 1) return false;  // nothing was taken out of the list: it is whole as it stands
+            if (strict ? s >= 0 && t >= 0 && u >= 0 : s > 0 && t > 0 && u > 0) return false;
         }
-        blockers_.resize(kept);
-        return !blocked;
+        return true;
     }
 
     const std::vector<Point>& p_;
     std::vector<std::uint32_t>& triangles_;
     std::vector<std::uint32_t> next_, previous_, blockers_;
-    std::size_t left_;
+    std::size_t left_, listed_;  // corners now, and when the gone ones were last taken out of blockers_
     std::uint64_t budget_;
 };
 

@@ -57,14 +57,14 @@ vitrail_LightDesc describeLight(const Scene& scene, const Ground& ground, const 
     out.horizon = with(e.horizon);
     out.nadir = with(e.nadir);
     out.ground = {centre.x, ground.automatic ? bounds.low.y - 1e-3f * diagonal : ground.height, centre.z, ground.visible ? 6.0f * diagonal : 0.0f};
-    out.groundLight = {0.62f, 0.30f, diagonal / 7.0f, glm::radians(e.yawDegrees)};
+    out.groundLight = {0.62f, 0.30f, diagonal / 3.5f, glm::radians(e.yawDegrees)};
     out.mapWidth = e.map.width;
     out.mapHeight = e.map.height;
     return out;
 }
 
 template <class Effect>
-Image shadeVoxels(Queue& queue, const Scene& scene, const Camera& camera, const Effect& effect, const char* name, std::uint32_t which) {
+Image shadeVoxels(Queue& queue, const Scene& scene, const Camera& camera, const Effect& effect, const char* name, const char* kernel) {
     detail::checkOptions(effect.method);
     detail::checkSamples(name, effect.samples);
     if (scene.materials.empty()) throw Error(ErrorCode::badInput, {"the scene has no materials", "", "", "one material, such as defaultGlass(bounds)"});
@@ -93,7 +93,7 @@ Image shadeVoxels(Queue& queue, const Scene& scene, const Camera& camera, const 
     call.upload(materials, table.data(), table.size());
     const vitrail_LightDesc light = describeLight(scene, effect.ground, bounds);
     Buffer<float> map;
-    if (which == 0 && !scene.environment.map.empty()) {
+    if (std::is_same_v<Effect, Glass> && !scene.environment.map.empty()) {
         map = workspace.take<float>(4 * scene.environment.map.pixels.size(), "environment map");
         call.upload(map, &scene.environment.map.pixels[0].x, 4 * scene.environment.map.pixels.size());
     }
@@ -102,11 +102,22 @@ Image shadeVoxels(Queue& queue, const Scene& scene, const Camera& camera, const 
     // A walk crosses at most this many cells on four straight ways through the grid; a march past it is ended and counted.
     const Uint3 size = grid.size();
     const auto bound = static_cast<std::int32_t>(4 * (size.x + size.y + size.z));
-    // Rows in bands, so that the callback is asked while the rays run.
-    call.step("glass: rays", 0.5);
-    call.launchRange(detail::Program{"light", ""}, "glass_shade", samples, grid.desc(), gbuffer.camera, light, which, mesh.positions(), mesh.indices(),
-                     mesh.normals(), mesh.materials(), gbuffer.triangle, voxels.voxels.bits(), voxels.voxels.rank(), voxels.voxels.mip(),
-                     voxels.surface, voxels.voxels.materialBuffer(), materials, map, bound, status, seen);
+    // In bands of samples, so that the callback is asked while rays run.
+    const detail::Program program{"light", ""};
+    constexpr std::uint64_t kBand = 1u << 18;
+    for (std::uint64_t first = 0; first < samples; first += kBand) {
+        call.step("rays", 0.5 + 0.5 * static_cast<double>(first) / static_cast<double>(samples));
+        const std::uint64_t count = std::min(kBand, samples - first);
+        const auto launch = [&](const auto&... tail) {
+            call.launchRange(program, kernel, count, grid.desc(), gbuffer.camera, light, mesh.positions(), mesh.indices(), mesh.normals(),
+                             mesh.materials(), gbuffer.triangle, voxels.voxels.bits(), voxels.voxels.rank(), voxels.voxels.mip(), voxels.surface,
+                             voxels.voxels.materialBuffer(), materials, tail...);
+        };
+        if constexpr (std::is_same_v<Effect, Glass>)
+            launch(map, bound, status, seen, first);
+        else
+            launch(bound, seen, first);
+    }
     auto image = detail::resolveSamples(call, seen, camera.width, camera.height, effect.samples);
     image->status = std::move(status);
     image->counted.effect = name;
@@ -120,11 +131,11 @@ Image shadeVoxels(Queue& queue, const Scene& scene, const Camera& camera, const 
 }  // namespace
 
 Image shade(Queue& queue, const Scene& scene, const Camera& camera, const Glass& effect) {
-    return shadeVoxels(queue, scene, camera, effect, "glass", 0);
+    return shadeVoxels(queue, scene, camera, effect, "glass", "glass_shade");
 }
 
 Image shade(Queue& queue, const Scene& scene, const Camera& camera, const Shadow& effect) {
-    return shadeVoxels(queue, scene, camera, effect, "shadow", 1);
+    return shadeVoxels(queue, scene, camera, effect, "shadow", "glass_shadow");
 }
 
 DirectionalLight sunOf(const Environment& environment) {

@@ -300,8 +300,12 @@ Truth thin(const MeshView& mesh, const Grid& grid) {
 //   z = z_0 + (V * (z_1 - z_0) + W * (z_2 - z_0)) / ((U + V) + W)
 //   if not z >= lowest then z = lowest;  if z > highest then z = highest     (of z_0, z_1, z_2; the first catches 0 / 0)
 //   z < 0 or z > size.z: nothing;  z == size.z: slice size.z - 1;  else slice floor(z).
-// The verdict of a column does not depend on which columns are tried, as long as they include floor(low - 0.5) to ceil(high -
-// 0.5) of the triangle's extent in columns.
+// A triangle edge-on to the line meets it only where rounding says so, by less than the rounding of its corners; it must then
+// count, or the surface that it belongs to would be met an odd number of times.
+// A column with all r > 0 or all r <= 0, or a row with all q > 0 or all q <= 0, meets nothing, whatever is rounded; and where all
+// w > 0 each edge's comparison changes at one column of a row at most, since every step to it is monotonic in cx. So it does
+// not matter which columns are tried, as long as no other is left out; the scan below tries floor(low - 0.5) to ceil(high - 0.5)
+// of the triangle's extent.
 
 namespace {
 

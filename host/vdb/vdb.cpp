@@ -3,11 +3,13 @@
 
 #include <atomic>
 #include <cmath>
+#include <fstream>
 #include <string>
 #include <system_error>
 
 #include <unistd.h>
 
+#include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 
 #include <vitrail/core/error.h>
@@ -152,13 +154,16 @@ VoxelBits loadVdb(const std::filesystem::path& file, const Grid& grid) {
     expectBox(grid, file);
     try {
         openvdb::initialize();
-        openvdb::io::File in(file.string());
-        in.open(false);
-        const auto name = in.beginName();
-        if (name == in.endName()) fail("it holds no grid", file, "a file with one");
-        const openvdb::GridBase::Ptr first = in.readGrid(name.gridName());
-        if (!first) fail("its first grid cannot be read", file, "the whole file");
-        return place(*first, file, grid);
+        // OpenVDB does not look whether its reads succeed; a stream that throws tells it that the file has ended.
+        std::ifstream bytes(file, std::ios::binary);
+        if (!bytes) fail("the file cannot be opened", file, "a .vdb file that can be read");
+        bytes.exceptions(std::ios::failbit | std::ios::badbit);
+        openvdb::io::Stream in(bytes, false);
+        const openvdb::GridPtrVecPtr grids = in.getGrids();
+        if (!grids || grids->empty() || !grids->front()) fail("it holds no grid", file, "a file with one");
+        return place(*grids->front(), file, grid);
+    } catch (const std::ios_base::failure&) {
+        fail("the file ends too early", file, "the whole file");
     } catch (const openvdb::Exception& error) {
         fail(error.what(), file, "a whole .vdb file");
     } catch (const std::bad_alloc&) {

@@ -36,6 +36,14 @@ void forTriangles(Pass& pass, const char* step, const std::function<void(std::ui
     }
 }
 
+PassNames passNames(const char* method, const char* pass) {
+    PassNames names;
+    names.kernel.append(method).append("_").append(pass);
+    names.tasks.append(names.kernel).append("_tasks");
+    names.step.append(method).append(": ").append(pass);
+    return names;
+}
+
 namespace {
 
 std::uint64_t meshBytes(const MeshView& mesh, bool materials) {

@@ -27,7 +27,8 @@ std::string checkOptions(const M& method) {
     std::string text;
     M::visitOptions(method, [&](std::string_view option, const auto& value) {
         checkOption(*findMethod(M::name), option, static_cast<double>(value));
-        text += (text.empty() ? "" : ",") + optionText(option, static_cast<double>(value));
+        if (!text.empty()) text += ',';
+        text += optionText(option, static_cast<double>(value));
     });
     return text;
 }
@@ -63,6 +64,47 @@ std::uint64_t estimateVoxelizer(const MeshInput& mesh, const Grid& grid, Channel
 
 /// Calls launch(first, count) for the triangles in batches, with a step of progress before each.
 void forTriangles(Pass& pass, const char* step, const std::function<void(std::uint32_t first, std::uint32_t count)>& launch);
+
+/// Names of a pass's two kernels and of its step of progress.
+struct PassNames {
+    std::string kernel, tasks, step;
+};
+PassNames passNames(const char* method, const char* pass);
+
+/// Launches <method>_bits and <method>_bits_tasks, whose first argument is the grid, then `options`, then the mesh.
+template <class... Options>
+void launchBits(Pass& pass, const char* method, const Options&... options) {
+    const DeviceMesh& mesh = pass.mesh;
+    const vitrail_GridDesc desc = pass.out.grid.desc();
+    const PassNames names = passNames(method, "bits");
+    forTriangles(pass, names.step.c_str(), [&](std::uint32_t first, std::uint32_t count) {
+        pass.call.launchRange(pass.program, names.kernel.c_str(), count, desc, options..., mesh.positions(), mesh.indices(), mesh.vertexCount(),
+                              first, pass.out.bits, pass.tasks, kTaskCapacity, pass.out.status);
+    });
+    const std::uint32_t groups = pass.call.taskGroups();
+    pass.call.launch(pass.program, names.tasks.c_str(), groups, 1, desc, options..., mesh.positions(), mesh.indices(), mesh.vertexCount(),
+                     pass.out.bits, pass.tasks, kTaskCapacity, pass.out.status, groups);
+}
+
+/// Launches <method>_channels and <method>_channels_tasks likewise.
+template <class... Options>
+void launchChannels(Pass& pass, const char* method, const Options&... options) {
+    const DeviceMesh& mesh = pass.mesh;
+    VoxelsState& out = pass.out;
+    const vitrail_GridDesc desc = out.grid.desc();
+    const PassNames names = passNames(method, "channels");
+    Buffer<std::uint32_t> status = pass.call.queue().workspace().take<std::uint32_t>(kStatusWords, "counts");
+    pass.call.fill(status, 0);
+    forTriangles(pass, names.step.c_str(), [&](std::uint32_t first, std::uint32_t count) {
+        pass.call.launchRange(pass.program, names.kernel.c_str(), count, desc, options..., mesh.positions(), mesh.indices(), mesh.vertexCount(),
+                              first, out.bits, out.rank, out.counts, pass.sums->normalSums, out.materials, mesh.materials(), pass.tasks,
+                              kTaskCapacity, status);
+    });
+    const std::uint32_t groups = pass.call.taskGroups();
+    pass.call.launch(pass.program, names.tasks.c_str(), groups, 1, desc, options..., mesh.positions(), mesh.indices(), mesh.vertexCount(),
+                     out.bits, out.rank, out.counts, pass.sums->normalSums, out.materials, mesh.materials(), pass.tasks, kTaskCapacity, status,
+                     groups);
+}
 
 }  // namespace detail
 }  // namespace v0

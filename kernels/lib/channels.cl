@@ -17,14 +17,22 @@ typedef struct {
     global uint* cursor;
 } Channels;
 
+// `times` fragments of one triangle in a voxel.
+static inline void channels_add_times(const Channels* channels, size_t word, uint bit, const long normal[3], uint material, uint times) {
+    const size_t index = bits_rank(channels->bits, channels->rank, word, bit);
+    if (channels->count) atomic_add(channels->count + index, times);
+    if (channels->normalSum)
+        for (int k = 0; k < 3; ++k) fixed_add(channels->normalSum + 3 * index + k, normal[k] * (long)times);
+    if (channels->material) atomic_min(channels->material + index, material);
+}
+
 static inline void channels_add(const Channels* channels, size_t word, uint bit, const long normal[3], uint material,
                                 uint triangle) {
-    const size_t index = bits_rank(channels->bits, channels->rank, word, bit);
-    if (channels->count) atomic_inc(channels->count + index);
-    if (channels->normalSum)
-        for (int k = 0; k < 3; ++k) fixed_add(channels->normalSum + 3 * index + k, normal[k]);
-    if (channels->material) atomic_min(channels->material + index, material);
-    if (channels->list) channels->list[atomic_inc(channels->cursor + index)] = triangle;
+    channels_add_times(channels, word, bit, normal, material, 1u);
+    if (channels->list) {
+        const size_t index = bits_rank(channels->bits, channels->rank, word, bit);
+        channels->list[atomic_inc(channels->cursor + index)] = triangle;
+    }
 }
 
 static inline void channels_normal(const Point unit, long fixed[3]) {

@@ -106,26 +106,38 @@ static float3 glass_transmittance(const Volume* volume, float3 p, float3 toLight
     return through;
 }
 
-// Light that a diffuse surface of unit albedo sends back: ambient, and the light as far as it gets through.
-static inline float3 glass_diffuse(const Volume* volume, const vitrail_LightDesc* light, float3 pVoxel, float3 n) {
-    const float facing = fmax(dot(n, xyz(light->toLight)), 0.0f);
-    float3 sum = xyz(light->ambient) * (0.65f + 0.35f * n.y);
-    if (facing > 0.0f)
-        sum += xyz(light->irradiance) * (facing * 0.31830989f) * glass_transmittance(volume, pVoxel + n * 0.75f, xyz(light->toLight), false, 0u);
-    return sum;
-}
+// Where a path of light ends: at a diffuse point of the scene, or in the surroundings. A sample has at most two (the mirror image on the
+// first surface, and what is seen through it); both are lit in one place, so that the walk to the light is compiled once.
+typedef struct {
+    float3 weight;     // of what is found there; zero: no end
+    float3 position;   // voxel coordinates
+    float3 direction;  // of the ray; for a diffuse point its normal
+    bool diffuse;
+} End;
 
-// What a ray that is outside all voxels sees, from a world position.
-static float3 glass_surroundings(const Volume* volume, const vitrail_LightDesc* light, global const float4* map, float3 o, float3 d,
-                                 float width) {
-    const float3 sky = surroundings_environment(light, map, d);
-    const float t = surroundings_ground(light, o, d);
-    if (t < 0.0f) return sky;
-    const float3 p = o + d * t;
-    const float fade = surroundings_fade(light, p);
-    const float3 up = (float3)(0.0f, d.y < 0.0f ? 1.0f : -1.0f, 0.0f);
-    const float3 ground = glass_diffuse(volume, light, to_voxel(volume->grid, p), up) * surroundings_albedo(light, p, width * t);
-    return sky * (1.0f - fade) + ground * fade;
+static float3 glass_light(const Volume* volume, const vitrail_LightDesc* light, global const float4* map, End end, float width) {
+    float3 seen = (float3)(0.0f), weight = end.weight, position = end.position, normal = end.direction;
+    if (!end.diffuse) {
+        const float3 o = to_world(volume->grid, end.position), d = end.direction;
+        const float t = surroundings_ground(light, o, d);
+        float share = 0.0f;  // of the ground; the rest is sky
+        if (t > 0.0f) {
+            const float3 p = o + d * t;
+            share = surroundings_fade(light, p);
+            position = to_voxel(volume->grid, p);
+            normal = (float3)(0.0f, d.y < 0.0f ? 1.0f : -1.0f, 0.0f);
+            weight *= share * surroundings_albedo(light, p, width * t);
+        }
+        if (share < 1.0f) seen = end.weight * (1.0f - share) * surroundings_environment(light, map, d);
+        if (!(share > 0.0f)) return seen;
+    }
+    // Ambient light, and the light's as far as it gets through.
+    float3 arriving = xyz(light->ambient) * (0.65f + 0.35f * normal.y);
+    const float facing = dot(normal, xyz(light->toLight));
+    if (facing > 0.0f)
+        arriving += xyz(light->irradiance) * (facing * 0.31830989f) *
+                    glass_transmittance(volume, position + normal * 0.75f, xyz(light->toLight), false, 0u);
+    return seen + weight * arriving;
 }
 
 // The triangle that the pixel sees, exactly: position and outward shading normal in voxel coordinates.
@@ -161,36 +173,37 @@ static inline bool glass_first_hit(const vitrail_GridDesc* grid, global const fl
     return true;
 }
 
-// Follows a ray that stands on a first hit through the glass; returns what it sees, and in *leaving its last direction.
-static float3 glass_trace(const Volume* volume, const vitrail_LightDesc* light, global const float4* map, float3 position, float3 normal,
-                          float3 flat, uint material, float3 direction, float width, global uint* status) {
+// Follows a ray that stands on a first hit through the glass to its two ends.
+static void glass_trace(const Volume* volume, float3 position, float3 normal, float3 flat, uint material, float3 direction, End ends[2],
+                        global uint* status) {
     const vitrail_MaterialDesc first = volume->materials[material];
     if (first.colour.w <= 0.5f) {
-        const float3 n = dot(direction, normal) > 0.0f ? -normal : normal;
-        return xyz(first.colour) * glass_diffuse(volume, light, position, n);
+        const End end = {xyz(first.colour), position, dot(direction, normal) > 0.0f ? -normal : normal, true};
+        ends[0] = end;
+        return;
     }
-    float3 seen = (float3)(0.0f), through = xyz(first.colour);
-    // The first surface also shows its reflection, weighted by Fresnel; later ones do not (one ray a sample).
+    float3 through = xyz(first.colour);
+    // The first surface also shows its mirror image, weighted by Fresnel; later ones do not (one ray a sample).
     bool inside = dot(direction, flat) > 0.0f;
     float3 n = glass_facing(direction, inside ? -normal : normal);
     float ratio = inside ? first.absorption.w : 1.0f / first.absorption.w;
-    const float cosine = -dot(direction, n);
     if (!inside) {
-        const float reflected = fresnel_reflectance(cosine, ratio);
-        const float3 mirror = fresnel_reflect(direction, n);
-        seen += glass_surroundings(volume, light, map, to_world(volume->grid, position), mirror, width) * reflected;
+        const float reflected = fresnel_reflectance(-dot(direction, n), ratio);
+        const End mirror = {(float3)(reflected), position, fresnel_reflect(direction, n), false};
+        ends[1] = mirror;
         through *= 1.0f - reflected;
-    }
-    float3 next;
-    if (fresnel_refract(direction, n, ratio, &next)) {
-        inside = !inside;
-        direction = next;
-    } else {
-        direction = fresnel_reflect(direction, n);
     }
     int steps = 0;
     uint current = material;
     for (int event = 1;; ++event) {
+        // At a boundary, n against the ray.
+        float3 next;
+        if (fresnel_refract(direction, n, ratio, &next)) {
+            inside = !inside;
+            direction = next;
+        } else {
+            direction = fresnel_reflect(direction, n);
+        }
         if (event >= MOST_EVENTS || steps >= volume->bound) {
             atomic_inc(status + STATUS_BOUNDED);
             break;
@@ -200,74 +213,83 @@ static float3 glass_trace(const Volume* volume, const vitrail_LightDesc* light, 
             if (inside) atomic_inc(status + STATUS_LOST);
             break;
         }
-        const vitrail_MaterialDesc m = volume->materials[inside ? current : hit.material];
+        if (!inside) current = hit.material;
+        const vitrail_MaterialDesc m = volume->materials[current], met = volume->materials[hit.material];
         if (inside) through *= glass_absorb(&m, hit.t * volume->grid->extent.x);
-        const vitrail_MaterialDesc met = volume->materials[hit.material];
         if (met.colour.w <= 0.5f) {
-            const float3 face = dot(direction, hit.normal) > 0.0f ? -hit.normal : hit.normal;
-            return seen + through * xyz(met.colour) * glass_diffuse(volume, light, hit.position, face);
+            const End end = {through * xyz(met.colour), hit.position, dot(direction, hit.normal) > 0.0f ? -hit.normal : hit.normal, true};
+            ends[0] = end;
+            return;
         }
+        if (!inside) through *= xyz(m.colour);
         position = hit.position;
         n = glass_facing(direction, inside ? -hit.normal : hit.normal);
         ratio = inside ? m.absorption.w : 1.0f / m.absorption.w;
-        if (fresnel_refract(direction, n, ratio, &next)) {
-            inside = !inside;
-            if (inside) {
-                current = hit.material;
-                through *= xyz(m.colour);
-            }
-            direction = next;
-        } else {
-            direction = fresnel_reflect(direction, n);
-        }
     }
-    return seen + through * glass_surroundings(volume, light, map, to_world(volume->grid, position), direction, width);
+    const End end = {through, position, direction, false};
+    ends[0] = end;
 }
 
-// One sample a pixel of the G-buffer; effect 0: glass, 1: transmittance to the light.
-kernel void glass_shade(const vitrail_GridDesc grid, const vitrail_CameraDesc camera, const vitrail_LightDesc light, uint effect,
+// One sample a pixel of the G-buffer: the picture.
+kernel void glass_shade(const vitrail_GridDesc grid, const vitrail_CameraDesc camera, const vitrail_LightDesc light,
                         global const float* positions, global const uint* indices, global const float* normals,
                         global const uint* triangleMaterial, global const uint* nearest, global const uint* bits, global const uint* rank,
                         global const uchar* mip, global const vitrail_SurfaceVoxel* surface, global const uint* voxelMaterial,
                         global const vitrail_MaterialDesc* materials, global const float4* map, int bound, global uint* status,
-                        global float4* samples, ulong count, uint perItem) {
+                        global float4* samples, ulong first, ulong count, uint perItem) {
     const Volume volume = {&grid, bits, rank, mip, surface, voxelMaterial, materials, bound};
     const float width = 2.0f * camera.up.w / (float)camera.height;  // of a pixel at distance 1; the ground's tiles are filtered by it
-    FOR_RANGE(pixel, count, perItem) {
+    FOR_RANGE(i, count, perItem) {
+        const size_t pixel = first + i;
         float3 o, d, position, normal, flat;
         camera_ray(&camera, (uint)(pixel % camera.width), (uint)(pixel / camera.width), &o, &d);
         const uint triangle = nearest[pixel];
-        float3 seen;
-        const bool hit = triangle != 0xffffffffu &&
-                         glass_first_hit(&grid, positions, indices, normals, triangle, o, d, &position, &normal, &flat);
+        End ends[2];
+        ends[0].weight = (float3)(1.0f);
+        ends[0].position = to_voxel(&grid, o);
+        ends[0].direction = d;
+        ends[0].diffuse = false;
+        ends[1].weight = (float3)(0.0f);
+        if (triangle != 0xffffffffu &&
+            glass_first_hit(&grid, positions, indices, normals, triangle, o, d, &position, &normal, &flat))
+            glass_trace(&volume, position, normal, flat, triangleMaterial ? triangleMaterial[triangle] : 0u, d, ends, status);
+        float3 seen = (float3)(0.0f);
+        for (int k = 0; k < 2; ++k)
+            if (ends[k].weight.x + ends[k].weight.y + ends[k].weight.z > 0.0f) seen += glass_light(&volume, &light, map, ends[k], width);
+        samples[pixel] = (float4)(seen, 1.0f);
+    }
+}
+
+// One sample a pixel of the G-buffer: transmittance from the first surface point straight to the light; alpha 0 where there is none.
+kernel void glass_shadow(const vitrail_GridDesc grid, const vitrail_CameraDesc camera, const vitrail_LightDesc light,
+                         global const float* positions, global const uint* indices, global const float* normals,
+                         global const uint* triangleMaterial, global const uint* nearest, global const uint* bits, global const uint* rank,
+                         global const uchar* mip, global const vitrail_SurfaceVoxel* surface, global const uint* voxelMaterial,
+                         global const vitrail_MaterialDesc* materials, int bound, global float4* samples, ulong first, ulong count, uint perItem) {
+    const Volume volume = {&grid, bits, rank, mip, surface, voxelMaterial, materials, bound};
+    const float3 toLight = xyz(light.toLight);
+    FOR_RANGE(i, count, perItem) {
+        const size_t pixel = first + i;
+        float3 o, d, position, normal, flat;
+        camera_ray(&camera, (uint)(pixel % camera.width), (uint)(pixel / camera.width), &o, &d);
+        const uint triangle = nearest[pixel];
+        uint material = 0u;
+        bool inside = false, lit = true;
         float alpha = 1.0f;
-        if (effect == 0u) {
-            if (hit) {
-                const uint material = triangleMaterial ? triangleMaterial[triangle] : 0u;
-                seen = glass_trace(&volume, &light, map, position, normal, flat, material, d, width, status);
-            } else {
-                seen = glass_surroundings(&volume, &light, map, o, d, width);
-            }
+        if (triangle != 0xffffffffu && glass_first_hit(&grid, positions, indices, normals, triangle, o, d, &position, &normal, &flat)) {
+            // On the lit side the way to the light starts outside; on the other it first crosses the body it stands on.
+            material = triangleMaterial ? triangleMaterial[triangle] : 0u;
+            inside = dot(normal, toLight) < 0.0f;
+            lit = !inside || materials[material].colour.w > 0.5f;
+            position += (inside ? -normal : normal) * 0.75f;
         } else {
-            const float3 toLight = xyz(light.toLight);
             const float t = surroundings_ground(&light, o, d);
-            seen = (float3)(1.0f);
-            alpha = 0.0f;
-            if (hit) {
-                // From the lit side the ray starts outside; from behind it must first cross the body it stands on.
-                const float3 side = dot(normal, toLight) >= 0.0f ? normal : -normal;
-                const uint material = triangleMaterial ? triangleMaterial[triangle] : 0u;
-                const bool glass = materials[material].colour.w > 0.5f;
-                const bool behind = dot(normal, toLight) < 0.0f;
-                seen = behind && !glass ? (float3)(0.0f)
-                                        : glass_transmittance(&volume, position + side * 0.75f, toLight, behind && glass, material);
-                alpha = 1.0f;
-            } else if (t > 0.0f) {
-                seen = glass_transmittance(&volume, to_voxel(&grid, o + d * t), toLight, false, 0u);
-                alpha = 1.0f;
-            }
+            if (t > 0.0f)
+                position = to_voxel(&grid, o + d * t);
+            else
+                lit = false, alpha = 0.0f;
         }
-        samples[pixel] = (float4)(seen, alpha);
+        samples[pixel] = (float4)(lit ? glass_transmittance(&volume, position, toLight, inside, material) : (float3)(0.0f), alpha);
     }
 }
 

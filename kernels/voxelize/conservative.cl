@@ -1,12 +1,9 @@
-// voxelize/conservative.cl: every cell that a triangle touches (vitrail/voxelize/conservative.h). Triangles
-// over more than BIG_COLUMNS columns leave blocks of columns as tasks for a second kernel, so that no work-group waits for one of them.
+// voxelize/conservative.cl: every cell that a triangle touches (vitrail/voxelize/conservative.h).
 #include "lib/channels.cl"
 #include "lib/column_run.cl"
 #include "lib/range.cl"
+#include "lib/tasks.cl"
 #pragma OPENCL FP_CONTRACT OFF
-
-#define BIG_COLUMNS 1024
-#define BLOCK 32  // columns along the edge of a task
 
 // Calls for every run of touched cells in columns [xLeast, xMost] x [yLeast, yMost]: ORs its bits, or adds to the channels.
 static inline void conservative_columns(const vitrail_GridDesc* grid, const Runs* runs, int xLeast, int xMost, int yLeast, int yMost,
@@ -69,23 +66,8 @@ static inline void conservative_triangle(const vitrail_GridDesc* grid, global co
     } else if (counting && triangle_degenerate(&t)) {
         atomic_inc(status + STATUS_DEGENERATE);
     }
-    const int blocksX = (runs.xLast - runs.xFirst) / BLOCK + 1, blocksY = (runs.yLast - runs.yFirst) / BLOCK + 1;
     int xLeast = runs.xFirst, xMost = runs.xLast, yLeast = runs.yFirst, yMost = runs.yLast;
-    if (block >= 0) {
-        xLeast += block % blocksX * BLOCK;
-        yLeast += block / blocksX * BLOCK;
-        xMost = min(xMost, xLeast + BLOCK - 1);
-        yMost = min(yMost, yLeast + BLOCK - 1);
-    } else if ((xMost - xLeast + 1) * (yMost - yLeast + 1) > BIG_COLUMNS) {
-        const uint count = (uint)(blocksX * blocksY);
-        // A list that is full is no error: the triangle is then done here.
-        const uint slot = atomic_add(status + STATUS_TASKS, count);
-        if (slot < taskCapacity && count <= taskCapacity - slot) {
-            for (uint i = 0; i < count; ++i) tasks[slot + i] = (uint2)(triangle, i);
-            return;
-        }
-        for (uint i = slot; i < taskCapacity && i - slot < count; ++i) tasks[i] = (uint2)(0xffffffffu, 0u);
-    }
+    if (tasks_columns(&xLeast, &xMost, &yLeast, &yMost, block, tasks, taskCapacity, status, triangle)) return;
     run_bounds(&t, delta, &runs);
     conservative_columns(grid, &runs, xLeast, xMost, yLeast, yMost, bits, channels, normal, material, triangle);
 }
@@ -101,10 +83,10 @@ kernel void conservative_bits(const vitrail_GridDesc grid, global const float* p
 kernel void conservative_bits_tasks(const vitrail_GridDesc grid, global const float* positions, global const uint* indices,
                                     uint vertexCount, global uint* bits, global uint2* tasks, uint taskCapacity, global uint* status,
                                     uint groups) {
-    const uint count = min(status[STATUS_TASKS], taskCapacity);
+    const uint count = tasks_count(status, taskCapacity);
     for (uint i = (uint)get_global_id(0); i < count; i += groups) {
         const uint2 task = tasks[i];
-        if (task.x != 0xffffffffu)
+        if (task.x != TASKS_NONE)
             conservative_triangle(&grid, positions, indices, vertexCount, task.x, (int)task.y, bits, 0, 0, tasks, 0, status);
     }
 }
@@ -124,11 +106,11 @@ kernel void conservative_channels_tasks(const vitrail_GridDesc grid, global cons
                                         uint vertexCount, global const uint* bits, global const uint* rank, global uint* counts,
                                         global long* normalSums, global uint* materialIds, global const uint* materials,
                                         global uint2* tasks, uint taskCapacity, global uint* status, uint groups) {
-    const uint count = min(status[STATUS_TASKS], taskCapacity);
+    const uint count = tasks_count(status, taskCapacity);
     const Channels channels = {bits, rank, counts, normalSums, materialIds, 0, 0};
     for (uint i = (uint)get_global_id(0); i < count; i += groups) {
         const uint2 task = tasks[i];
-        if (task.x != 0xffffffffu)
+        if (task.x != TASKS_NONE)
             conservative_triangle(&grid, positions, indices, vertexCount, task.x, (int)task.y, 0, &channels, materials, tasks, 0, status);
     }
 }

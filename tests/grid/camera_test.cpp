@@ -41,6 +41,12 @@ TEST(PerspectiveGrid, ColumnsGoThroughTheEye) {
     }
 }
 
+TEST(PerspectiveGrid, PointsAtOrBehindTheEyeAreOutside) {
+    const Grid grid = kPerspective.grid();
+    expectNear(grid.toVoxel({0.5f, 1, 5}), {0, 0, -5}, 0);
+    expectNear(grid.toVoxel({0.5f, 1, 7}), {0, 0, -15}, 0);
+}
+
 TEST(CameraGrid, AxesAreUnitAndRightAngled) {
     const vitrail_GridDesc d = kSlanted.grid().desc();
     const Double3 x(d.axisX.x, d.axisX.y, d.axisX.z), y(d.axisY.x, d.axisY.y, d.axisY.z), z(d.axisZ.x, d.axisZ.y, d.axisZ.z);
@@ -98,6 +104,10 @@ TEST(CameraGrid, Refuses) {
     both([&](auto& g) { g.farDepth = kInf; });
     both([](auto& g) { g.up = g.forward; });
     both([](auto& g) { g.up = -2.0f * g.forward; });
+    both([](auto& g) {
+        g.forward = {1, 2, 3};
+        g.up = {2, 4, 6.000001f};  // parallel but for a rounding
+    });
     both([](auto& g) { g.forward = Float3(0.0f); });
     both([&](auto& g) { g.up.x = kNan; });
     both([&](auto& g) { g.forward.y = kInf; });

@@ -55,9 +55,9 @@ TEST(Inspect, MergesSoupAndTreatsBothZeroesAlike) {
 }
 
 TEST(Inspect, VolumeKeepsItsDigitsFarFromTheOrigin) {
-    // All coordinates are exact there; the sum about the origin would lose 8^3 in (2^23)^3.
-    const MeshReport report = inspect(octahedron(Float3(8388608.0f), 8.0f));
-    EXPECT_DOUBLE_EQ(report.signedVolume, 4.0 / 3.0 * 512);
+    // All coordinates are exact there; a sum about the origin would have terms of 1e18, rounded to 128.
+    const MeshReport report = inspect(octahedron(Float3(12345678.0f, 7654321.0f, 8388609.0f), 4097.0f));
+    EXPECT_DOUBLE_EQ(report.signedVolume, 4.0 / 3.0 * 4097 * 4097 * 4097);
 }
 
 TEST(Inspect, Inverted) {

@@ -77,6 +77,19 @@ TEST(SmoothNormals, CreaseEndsInsideAFace) {
     EXPECT_EQ(cornersAt({2, 0, 0}), 1u);
 }
 
+TEST(SmoothNormals, FansThatMeetInAVertexShareItsNormalUnlessCreased) {
+    // Two tetrahedra, one below the origin and one to the right of it.
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, -1, 1}, {1, -1, -1}, {-2, -1, 0}, {1, 1, 1}, {1, 1, -1}, {1, -2, 0}};
+    mesh.indices = {0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2, 0, 4, 5, 0, 6, 4, 0, 5, 6, 4, 6, 5};
+    ASSERT_TRUE(inspect(mesh).closed());
+    const Mesh smooth = withSmoothNormals(mesh);
+    EXPECT_EQ(smooth.positions.size(), 7u);
+    EXPECT_LT(smooth.normals[0].x, -0.5f) << "the mean of left and up";
+    EXPECT_GT(smooth.normals[0].y, 0.5f);
+    EXPECT_EQ(withSmoothNormals(mesh, 10.0f).positions.size(), 24u);
+}
+
 TEST(SmoothNormals, SeamsOfTextureStaySplitButShadeAlike) {
     // Two triangles that share an edge by position only.
     Mesh mesh;

@@ -33,6 +33,7 @@ public:
     float edge() const { return desc_.extent.x; }  ///< of a box grid, world units
 
     /// World to voxel coordinates in double precision from the floats as stored: the mapping that device and truth share.
+    /// In a perspective grid x = y = 0 for points at or behind the eye, whose z is negative.
     Double3 toVoxel(Float3 pWorld) const;
     /// Voxel coordinates to world space.
     Double3 toWorld(Double3 pVoxel) const;

@@ -1,0 +1,20 @@
+#include <vitrail/voxelize/sampled.h>
+
+#include "voxelize/prepare.h"
+
+namespace vitrail {
+inline namespace v0 {
+
+Voxels voxelize(Queue& queue, const MeshInput& mesh, const Grid& grid, const Sampled& method) {
+    return detail::runVoxelizer(queue, mesh, grid, method.channels,
+                                {Sampled::name.data(), detail::checkOptions(method), true,
+                                 [](detail::Pass& pass) { detail::launchBits(pass, "sampled"); },
+                                 [](detail::Pass& pass) { detail::launchChannels(pass, "sampled"); }});
+}
+
+std::uint64_t estimate(const MeshInput& mesh, const Grid& grid, const Sampled& method) {
+    return detail::estimateVoxelizer(mesh, grid, method.channels, true);
+}
+
+}  // namespace v0
+}  // namespace vitrail
