@@ -1,4 +1,4 @@
-# cmake -DHOW=installed|folder -DBUILD=build tree -DSCRATCH=folder -DGENERATOR=.. -DCOMPILER=.. -P check.cmake
+# cmake -DHOW=installed|folder -DBUILD=build tree -DSCRATCH=folder -DGENERATOR=.. -DCOMPILER=.. -DFLAGS=.. -P check.cmake
 # Builds and runs the outside project beside this file against Vitrail as `cmake --install` lays it down, or builds it with
 # Vitrail as a folder of its own. The scratch folder is emptied first, so that nothing of an earlier layout can help.
 get_filename_component(here ${CMAKE_SCRIPT_MODE_FILE} DIRECTORY)
@@ -22,7 +22,7 @@ else()
 endif()
 # Without optimisation: only whether it compiles, links and runs is asked.
 step(${CMAKE_COMMAND} -S ${here} -B ${SCRATCH}/build -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_BUILD_TYPE=Debug
-  -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF ${where})
+  "-DCMAKE_CXX_FLAGS_DEBUG=${FLAGS} -O0" -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF ${where})
 if(HOW STREQUAL installed)
   step(${CMAKE_COMMAND} --build ${SCRATCH}/build --target hello)
   step(${SCRATCH}/build/hello)
