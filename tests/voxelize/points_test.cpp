@@ -164,7 +164,6 @@ TEST(Points, MissLittleOfTheThinSurface) {
             compareVoxels(voxelize(queue(), one.mesh, grid, Points{.safetyFactor = 2}).host(), thin.certain, thin.possible);
         EXPECT_LE(twice.missing, once.missing) << one.name;
         RecordProperty(one.name, std::to_string(100 * once.missingShare()) + " % at 1, " + std::to_string(100 * twice.missingShare()) + " % at 2");
-        printf("%s: %s; at 2: %s\n", one.name.c_str(), once.text().c_str(), twice.text().c_str());
         missing += once.missing;
         all += once.truth;
     }
