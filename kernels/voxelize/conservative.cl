@@ -52,7 +52,7 @@ static inline void conservative_triangle(const vitrail_GridDesc* grid, global co
     }
     const Triangle t = {triangle_vertex(grid, positions, corner[0]), triangle_vertex(grid, positions, corner[1]),
                         triangle_vertex(grid, positions, corner[2])};
-    const real delta = run_delta(grid);
+    const real delta = run_delta(grid, &t);
     Runs runs;
     if (!run_box(grid, &t, delta, &runs)) {
         if (counting) atomic_inc(status + STATUS_OUTSIDE);
