@@ -14,9 +14,7 @@
 //
 // A factor above MAX_FACTOR splits the triangle at its edge midpoints, as often as it takes (the passes of section 4.2), leaving out what lies
 // outside the grid.
-#include "lib/channels.cl"
-#include "lib/range.cl"
-#include "lib/tasks.cl"
+#include "lib/mark.cl"
 #pragma OPENCL FP_CONTRACT OFF
 
 #define MAX_FACTOR REAL(64)
@@ -291,44 +289,8 @@ static inline void points_triangle(const vitrail_GridDesc* grid, float safetyFac
     points_flush(&s);
 }
 
-kernel void points_bits(const vitrail_GridDesc grid, float safetyFactor, global const float* positions, global const uint* indices,
-                        uint vertexCount, uint first, global uint* bits, global uint2* tasks, uint taskCapacity, global uint* status,
-                        ulong count, uint perItem) {
-    FOR_RANGE(i, count, perItem)
-        points_triangle(&grid, safetyFactor, positions, indices, vertexCount, first + (uint)i, -1, bits, 0, 0, tasks, taskCapacity, status);
-}
-
-// Parts of big triangles, shared out over `groups` work-items of local size 1.
-kernel void points_bits_tasks(const vitrail_GridDesc grid, float safetyFactor, global const float* positions, global const uint* indices,
-                              uint vertexCount, global uint* bits, global uint2* tasks, uint taskCapacity, global uint* status,
-                              uint groups) {
-    const uint count = tasks_count(status, taskCapacity);
-    for (uint i = (uint)get_global_id(0); i < count; i += groups) {
-        const uint2 task = tasks[i];
-        if (task.x != TASKS_NONE)
-            points_triangle(&grid, safetyFactor, positions, indices, vertexCount, task.x, (int)task.y, bits, 0, 0, tasks, 0, status);
-    }
-}
-
-kernel void points_channels(const vitrail_GridDesc grid, float safetyFactor, global const float* positions, global const uint* indices,
-                            uint vertexCount, uint first, global const uint* bits, global const uint* rank, global uint* counts,
-                            global long* normalSums, global uint* materialIds, global const uint* materials, global uint2* tasks,
-                            uint taskCapacity, global uint* status, ulong count, uint perItem) {
-    const Channels channels = {bits, rank, counts, normalSums, materialIds, 0, 0};
-    FOR_RANGE(i, count, perItem)
-        points_triangle(&grid, safetyFactor, positions, indices, vertexCount, first + (uint)i, -1, 0, &channels, materials, tasks, taskCapacity,
-                        status);
-}
-
-kernel void points_channels_tasks(const vitrail_GridDesc grid, float safetyFactor, global const float* positions,
-                                  global const uint* indices, uint vertexCount, global const uint* bits, global const uint* rank,
-                                  global uint* counts, global long* normalSums, global uint* materialIds, global const uint* materials,
-                                  global uint2* tasks, uint taskCapacity, global uint* status, uint groups) {
-    const uint count = tasks_count(status, taskCapacity);
-    const Channels channels = {bits, rank, counts, normalSums, materialIds, 0, 0};
-    for (uint i = (uint)get_global_id(0); i < count; i += groups) {
-        const uint2 task = tasks[i];
-        if (task.x != TASKS_NONE)
-            points_triangle(&grid, safetyFactor, positions, indices, vertexCount, task.x, (int)task.y, 0, &channels, materials, tasks, 0, status);
-    }
+kernel void points_mark(const vitrail_GridDesc grid, float safetyFactor, MARK_PARAMETERS) {
+    const Channels channels = MARK_CHANNELS;
+    MARK_EACH(triangle, block, points_triangle(&grid, safetyFactor, positions, indices, vertexCount, triangle, block, bits, rank ? &channels : 0,
+                                            materials, tasks, taskCapacity, status))
 }
