@@ -1,9 +1,9 @@
 // Devices and their limits, memory and its pool.
 #include <gtest/gtest.h>
-#include <stdlib.h>
 #include <vitrail/core/error.h>
 
 #include "tests/support/device.h"
+#include "tests/support/variable.h"
 
 namespace vitrail {
 namespace {
@@ -31,11 +31,14 @@ TEST(Device, IsFoundByAnyPartOfItsName) {
 }
 
 TEST(Device, TakesItsMemoryLimitFromTheEnvironment) {
-    ::setenv("VITRAIL_MEMORY_LIMIT", "512M", 1);
-    EXPECT_EQ(Device::select().memoryLimit(), 512ull << 20);
-    ::setenv("VITRAIL_MEMORY_LIMIT", "lots", 1);
-    EXPECT_EQ(codeOf([] { Device::select(); }), ErrorCode::badOption);
-    ::unsetenv("VITRAIL_MEMORY_LIMIT");
+    {
+        const test::WithVariable limit("VITRAIL_MEMORY_LIMIT", "512M");
+        EXPECT_EQ(Device::select().memoryLimit(), 512ull << 20);
+    }
+    {
+        const test::WithVariable limit("VITRAIL_MEMORY_LIMIT", "lots");
+        EXPECT_EQ(codeOf([] { Device::select(); }), ErrorCode::badOption);
+    }
     EXPECT_GT(Device::select().memoryLimit(), 0u);
 }
 

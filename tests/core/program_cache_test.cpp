@@ -1,42 +1,21 @@
 // The program cache: loaded by the next device, rebuilt when a file is damaged, never an error.
 #include <gtest/gtest.h>
 #include <stdlib.h>
-#include <unistd.h>
 #include <vitrail/core/error.h>
 
 #include <filesystem>
 #include <fstream>
-#include <memory>
-#include <optional>
 #include <string>
 
 #include "core/scan.h"
 #include "tests/support/device.h"
+#include "tests/support/variable.h"
 
 namespace vitrail {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Sets an environment variable for a scope.
-class WithVariable {
-public:
-    WithVariable(const char* name, const std::string& value) : name_(name) {
-        if (const char* before = ::getenv(name)) before_ = before;
-        ::setenv(name, value.c_str(), 1);
-    }
-    ~WithVariable() {
-        if (before_)
-            ::setenv(name_, before_->c_str(), 1);
-        else
-            ::unsetenv(name_);
-    }
-    WithVariable(const WithVariable&) = delete;
-
-private:
-    const char* name_;
-    std::optional<std::string> before_;
-};
+using test::WithVariable;
 
 class ProgramCache : public ::testing::Test {
 protected:

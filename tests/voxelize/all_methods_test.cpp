@@ -173,29 +173,25 @@ TEST_P(EveryVoxelizer, CanBeCancelledAndGoesOn) {
     EXPECT_EQ(voxelize(own, mesh, grid, method(kAll)).host().words, before);
 }
 
-// More blocks of big triangles than the task list holds: those that find no place are done at once, to the same voxels.
+// More blocks of big triangles than the task list holds (64 each, 65536 in all): those that find no place are done at once, to the same voxels.
 TEST_P(EveryVoxelizer, AFullTaskListChangesNothing) {
-    const Grid grid = Grid::box(Float3(0), 1.0f, Uint3(70, 70, 40));
+    const Grid grid = Grid::box(Float3(0), 1.0f, Uint3(256, 256, 16));
     test::Random random(71);
-    std::vector<Mesh> parts(5);
+    std::vector<Mesh> parts(3);
     Mesh whole;
-    for (unsigned i = 0; i < 20000; ++i) {
-        const float z = random.in(0, 40), x = random.in(0, 4), y = random.in(0, 4);
-        Mesh& part = parts[i / 4000];
-        test::addTriangle(part, {x, y, z}, {x + 65.5f, y, z}, {x, y + 33, z + 1});
-        test::addTriangle(whole, {x, y, z}, {x + 65.5f, y, z}, {x, y + 33, z + 1});
+    for (unsigned i = 0; i < 1200; ++i) {
+        const Float3 from(random.in(-5, 0), random.in(-5, 0), random.in(0, 16)), to = from + Float3(265, 265, random.in(-2, 2));
+        const Float3 side = from + Float3(random.in(0, 2), 0, 0.2f);
+        test::addTriangle(parts[i / 400], from, to, side);
+        test::addTriangle(whole, from, to, side);
     }
     VoxelBits expected(grid);
-    std::uint64_t fragments = 0;
     for (const Mesh& part : parts) {
-        const Voxels v = voxelize(queue(), part, grid, method(Channel::count));
+        const Voxels v = voxelize(queue(), part, grid, method());
         for (std::size_t w = 0; w < expected.words.size(); ++w) expected.words[w] |= v.host().words[w];
-        for (const std::uint32_t n : v.counts()) fragments += n;
     }
-    const Voxels v = voxelize(queue(), whole, grid, method(Channel::count));
-    EXPECT_EQ(v.host().words, expected.words);
-    for (const std::uint32_t n : v.counts()) fragments -= n;
-    EXPECT_EQ(fragments, 0u);
+    EXPECT_GT(expected.occupied(), 1000u);
+    EXPECT_EQ(voxelize(queue(), whole, grid, method()).host().words, expected.words);
 }
 
 // Buffers of the caller's are not checked on the host: what cannot be used is skipped and counted.

@@ -1,6 +1,5 @@
 // The same bits: for any order of the triangles, any number of threads, twice, on several queues at once, and without 64-bit atomics.
 #include <gtest/gtest.h>
-#include <stdlib.h>
 #include <vitrail/voxelize/voxelize.h>
 
 #include <array>
@@ -10,6 +9,7 @@
 #include "tests/support/cases.h"
 #include "tests/support/device.h"
 #include "tests/support/fingerprint.h"
+#include "tests/support/variable.h"
 
 namespace vitrail {
 namespace {
@@ -65,7 +65,7 @@ TEST(SameBits, WithoutAtomicsOf64Bits) {
     const Mesh mesh = test::fingerprintMesh();
     const Grid grid = Grid::fit(mesh.bounds(), 100);
     const Channel all = Channel::count | Channel::normal | Channel::material;
-    ::setenv("VITRAIL_BUILD_OPTIONS", "-DVITRAIL_NO_INT64_ATOMICS", 1);
+    const test::WithVariable options("VITRAIL_BUILD_OPTIONS", "-DVITRAIL_NO_INT64_ATOMICS");
     Device device = Device::select();
     Queue other(device);
     for (const char* name : {"conservative", "sampled", "points"}) {
@@ -74,7 +74,6 @@ TEST(SameBits, WithoutAtomicsOf64Bits) {
         EXPECT_EQ(without.normalBuffer().read(other), with.normalBuffer().read(queue())) << name;
         EXPECT_EQ(without.counts(), with.counts()) << name;
     }
-    ::unsetenv("VITRAIL_BUILD_OPTIONS");
 }
 
 }  // namespace
