@@ -253,7 +253,8 @@ int main(int argc, char** argv) {
         Bench bench;
         const std::vector<Input> meshes = inputs();
         addAll(bench, meshes);
-        for (const auto& [key, value] : cli::machineRecord(bench.deviceInfo()).items())
+        const cli::Json machine = cli::machineRecord(bench.deviceInfo());
+        for (const auto& [key, value] : machine.items())
             benchmark::AddCustomContext(key, value.is_string() ? value.get<std::string>() : value.dump());
         benchmark::RunSpecifiedBenchmarks();
         benchmark::Shutdown();
