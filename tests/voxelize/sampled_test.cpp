@@ -1,6 +1,8 @@
 // sampled: equal to the plain scan of column centres, bit for bit, on every kind of grid.
 #include <gtest/gtest.h>
+#include <vitrail/grid/camera.h>
 #include <vitrail/reference/truth.h>
+#include <vitrail/scene/shapes.h>
 #include <vitrail/voxelize/sampled.h>
 
 #include <algorithm>
@@ -40,6 +42,49 @@ TEST(Sampled, EqualsTheScanOnMeanMeshes) {
             expectScan(one.mesh, grid, one.name);
             for (const Grid& camera : test::cameraGrids({Float3(0), Float3(size)}, size)) expectScan(one.mesh, camera, one.name);
         }
+    }
+}
+
+// Edges run through the centres of columns, but for the rounding of voxel coordinates: what decides is the last bit.
+TEST(Sampled, EqualsTheScanWhereEdgesMeetCentres) {
+    for (const unsigned cells : {7u, 15u, 30u}) {
+        const Mesh terrain = makeShape("terrain", std::vector<std::string>{"cells=" + std::to_string(cells)}),
+                   box = makeShape("box", std::vector<std::string>{"pieces=" + std::to_string(cells)});
+        for (const Mesh* mesh : {&terrain, &box})
+            for (const unsigned each : {1u, 2u, 3u}) {
+                const Bounds bounds = mesh->bounds();
+                const Uint3 size(each * cells);
+                const float edge = (bounds.high.x - bounds.low.x) / float(size.x);
+                expectScan(*mesh, Grid::box(bounds.low, edge, size), "corners on cell faces");
+                expectScan(*mesh, Grid::box(bounds.low - edge / 2, edge, size + 1u), "corners on centres");
+                const Float3 middle = (bounds.low + bounds.high) * 0.5f;
+                const float half = (bounds.high.x - bounds.low.x) / 2;
+                for (const Float3 forward : {Float3(0, 0, 1), Float3(0, -1, 0), Float3(1, 0, 0)}) {
+                    const Float3 up = forward.y == 0 ? Float3(0, 1, 0) : Float3(0, 0, 1);
+                    expectScan(*mesh, OrthographicGrid{middle, forward, up, half, half, -2, 2, size}.grid(), "orthographic, along the axes");
+                    expectScan(*mesh, PerspectiveGrid{middle - forward * 2.0f, forward, up, half / 2, half / 2, 0.5f, 4, size}.grid(),
+                               "perspective, along the axes");
+                }
+            }
+    }
+}
+
+// Triangles around the line of the middle column, exactly on it, some corners behind the eye: met by one of a fan's triangles, or two.
+TEST(Sampled, EqualsTheScanAcrossTheEye) {
+    test::Random random(12);
+    const Grid grid = PerspectiveGrid{Float3(0), Float3(0, 0, 1), Float3(0, 1, 0), 1, 1, 0.5f, 9, Uint3(5, 5, 40)}.grid();
+    Mesh fans;
+    for (int i = 0; i < 100; ++i) {
+        const Float3 middle(0, 0, random.in(1, 8));
+        std::vector<Float3> rim;
+        for (const Float3 p : {Float3(3, 0, 0), Float3(2, 2, 0), Float3(0, 3, 0), Float3(-3, 0, 0), Float3(-1, -2, 0), Float3(0, -3, 0)})
+            rim.push_back(p * float(1 + random.bits() % 3) + Float3(0, 0, random.in(-3, 9)));
+        for (std::size_t k = 0; k < rim.size(); ++k) test::addTriangle(fans, middle, rim[k], rim[(k + 1) % rim.size()]);
+        for (std::size_t k = 0; k + 2 < rim.size(); ++k) test::addTriangle(fans, rim[k + 2], rim[k], rim[k + 1]);
+    }
+    for (std::size_t t = 0; t < fans.triangleCount(); ++t) {
+        const Mesh one = test::triangles({fans.positions[3 * t], fans.positions[3 * t + 1], fans.positions[3 * t + 2]});
+        expectScan(one, grid, "a triangle of a fan");
     }
 }
 
