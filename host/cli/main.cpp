@@ -34,6 +34,7 @@ int main(int argc, char** argv) {
     addShape(app, run);
     addVoxelize(app, run);
     addCompare(app, run);
+    addRender(app, run);
     if (argc == 1) {
         std::fputs(app.help().c_str(), stderr);
         return 2;

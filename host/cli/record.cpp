@@ -135,6 +135,24 @@ Json record(const VoxelReport& report) {
             {"singlePrecision", report.singlePrecision}};
 }
 
+Json record(const ImageReport& report) {
+    return {{"effect", report.effect},
+            {"method", report.method},
+            {"triangles", report.triangles},
+            {"grid", vectorRecord(report.grid)},
+            {"occupied", report.occupied},
+            {"rays", report.rays},
+            {"lostRays", report.lostRays},
+            {"boundedRays", report.boundedRays},
+            {"kernelMs", report.kernelMs},
+            {"wallMs", report.wallMs},
+            {"uploadMs", report.uploadMs},
+            {"buildMs", report.buildMs},
+            {"deviceBytes", report.deviceBytes},
+            {"device", report.device},
+            {"singlePrecision", report.singlePrecision}};
+}
+
 void addErrors(Json& record, const VoxelDifference& conservative, const VoxelDifference& thin, const Watertight& watertight) {
     record["missing"] = conservative.missingShare();
     record["missingCount"] = conservative.missing;

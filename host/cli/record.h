@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <vitrail/core/device.h>
+#include <vitrail/light/image.h>
 #include <vitrail/methods.h>
 #include <vitrail/metrics/voxels.h>
 #include <vitrail/metrics/watertight.h>
@@ -29,6 +30,7 @@ Json record(const Method& method);
 Json record(const MeshReport& mesh);
 Json record(const Grid& grid);  ///< size, origin, edge
 Json record(const VoxelReport& report);
+Json record(const ImageReport& report);
 
 const char* name(Family family);
 const char* name(Guarantee guarantee);

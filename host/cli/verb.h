@@ -24,6 +24,7 @@ void addInfo(CLI::App& app, Run& run);
 void addShape(CLI::App& app, Run& run);
 void addVoxelize(CLI::App& app, Run& run);
 void addCompare(CLI::App& app, Run& run);
+void addRender(CLI::App& app, Run& run);
 
 /// Milliseconds since the program started.
 double sinceStartMs();

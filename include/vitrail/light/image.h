@@ -4,6 +4,7 @@
 
 #include <vitrail/core/buffer.h>
 #include <vitrail/core/report.h>
+#include <vitrail/core/vector.h>
 #include <vitrail/scene/image.h>
 
 namespace vitrail {
