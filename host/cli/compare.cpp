@@ -74,8 +74,8 @@ std::string tableText(const Json& records) {
         std::string tight = "yes";
         if (!r["watertight"].get<bool>()) {
             tight = "no:";
-            if (leaks != 0) tight += " " + countText(leaks) + " rays";
-            if (flooded != 0) tight += std::string(leaks != 0 ? "," : "") + " " + countText(flooded) + " cells";
+            if (leaks != 0) tight += " " + countText(leaks) + (leaks == 1 ? " ray" : " rays");
+            if (flooded != 0) tight += std::string(leaks != 0 ? "," : "") + " " + countText(flooded) + (flooded == 1 ? " cell" : " cells");
         }
         char iou[32];
         std::snprintf(iou, sizeof iou, "%.4f", r["iou"].get<double>());

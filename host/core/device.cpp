@@ -22,6 +22,8 @@ std::string lower(std::string text) {
     return text;
 }
 
+bool isPocl(const std::string& platform) { return lower(platform).find("portable computing language") != std::string::npos; }
+
 std::string environment(const char* variable) {
     const char* value = std::getenv(variable);
     return value == nullptr ? std::string() : std::string(value);
@@ -200,6 +202,9 @@ std::shared_ptr<DeviceState> makeDeviceState(const cl::Context& context, const c
     state->info = describe(device);
     state->memoryLimit = defaultMemoryLimit(state->info);
     state->cacheFolder = findCacheFolder();
+    // PoCL keeps a cache of its own. Asked for a binary it compiles every kernel for any local size, which takes several times as long as
+    // what is then used, and saves nothing.
+    state->storesPrograms = !isPocl(state->info.platform) || !environment("VITRAIL_CACHE_DIR").empty();
     return state;
 }
 
@@ -224,9 +229,8 @@ Device Device::select(const std::string& name) {
         const DeviceInfo info = detail::describe(devices[i]);
         const std::string full = info.platform + " / " + info.name;
         found += (found.empty() ? "" : ", ") + full;
-        const bool pocl = detail::lower(info.platform).find("portable computing language") != std::string::npos;
         const int score = !wanted.empty() ? (detail::lower(full).find(wanted) != std::string::npos ? 1 : 0)
-                                          : (info.cpu ? (pocl ? 3 : 2) : 1);
+                                          : (info.cpu ? (detail::isPocl(info.platform) ? 3 : 2) : 1);
         if (score > bestScore) {
             best = static_cast<int>(i);
             bestScore = score;

@@ -1,4 +1,7 @@
-// Whole files in, whole files out: the only place of the readers and writers that opens one, save what their libraries open themselves.
+// Whole files in, whole files out: the only place of the readers and writers that opens one, save what their libraries open
+// themselves.
+#include <vitrail/core/error.h>
+
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
@@ -6,8 +9,6 @@
 #include <memory>
 #include <random>
 #include <system_error>
-
-#include <vitrail/core/error.h>
 
 #include "io/readers.h"
 
@@ -78,7 +79,8 @@ void writeWhole(const fs::path& file, const std::function<void(const fs::path&)>
     const fs::file_status status = fs::status(file, error);
     if (fs::is_directory(status)) fail("this is a folder; the name of a file was expected", file);
     // Renaming onto a device or pipe would put a file in its place.
-    if (fs::exists(status) && !fs::is_regular_file(status)) fail("this is neither a file nor a new name", file, "the name of a file");
+    if (fs::exists(status) && !fs::is_regular_file(status))
+        fail("this is neither a file nor a new name", file, "the name of a file");
     if (file.filename().empty()) fail("this is no name of a file", file);
     fs::path target = file;
     if (fs::is_symlink(fs::symlink_status(file, error)) && fs::exists(status)) target = fs::canonical(file);

@@ -1,23 +1,18 @@
-// io/gltf.cpp: glTF 2.0, text and binary, as one mesh in world space with its materials. tinygltf turns the JSON into its typed
-// model; bytes are ours: it would decode every picture, look for files outside the folder, and refuse a buffer longer than stated.
-// Skins stand in the pose of the node hierarchy, morph targets at their default weights; animations and tangents are not read.
+// io/gltf.cpp: glTF 2.0 as one mesh in world space with its materials. Skins stand in the pose of the node hierarchy, morph
+// targets at their default weights; animations and tangents are not read.
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include <glm/gtc/quaternion.hpp>
-#include <tiny_gltf.h>
 
 #include <vitrail/core/error.h>
 #include <vitrail/io/image.h>
 
-#include "io/json_text.h"
+#include "io/gltf_document.h"
 #include "io/readers.h"
 #include "io/transform.h"
 
@@ -26,68 +21,21 @@ namespace vitrail::io_detail {
 namespace {
 
 using Json = nlohmann::json;
-using Bytes = std::span<const std::byte>;
+using Attribute = GltfAttribute;
 
-constexpr const char* kRead[] = {"KHR_mesh_quantization",   "KHR_texture_transform",  "KHR_materials_transmission",
-                                 "KHR_materials_ior",       "KHR_materials_volume",   "KHR_materials_emissive_strength",
-                                 "KHR_lights_punctual",     "EXT_texture_webp"};
 // A Mesh counts its vertices and triangles in 32 bits.
 constexpr std::size_t kMostCounted = 0xffffffffu;
-// Elements that an accessor without bytes of its own may claim, whatever the size of the file.
-constexpr std::size_t kFreeElements = 65536;
-
-std::uint32_t readU32(Bytes bytes, std::size_t at) {
-    std::uint32_t value;
-    std::memcpy(&value, bytes.data() + at, 4);
-    return value;
-}
-
-std::string inQuotes(const std::string& text) { return "\"" + text + "\""; }
-
-std::string at(const char* list, std::size_t index) { return std::string(list) + "[" + std::to_string(index) + "]"; }
-
-// "%20" and its like; left alone where the two digits are missing.
-std::string percentDecoded(const std::string& uri) {
-    std::string text;
-    for (std::size_t i = 0; i < uri.size(); ++i) {
-        const auto digit = [&](std::size_t k) {
-            return k < uri.size() && std::isxdigit(static_cast<unsigned char>(uri[k])) ? std::stoi(uri.substr(k, 1), nullptr, 16) : -1;
-        };
-        if (uri[i] == '%' && digit(i + 1) >= 0 && digit(i + 2) >= 0) {
-            text.push_back(static_cast<char>(digit(i + 1) * 16 + digit(i + 2)));
-            i += 2;
-        } else {
-            text.push_back(uri[i]);
-        }
-    }
-    return text;
-}
-
-bool noImage(tinygltf::Image*, const int, std::string*, std::string*, int, int, const unsigned char*, int, void*) { return true; }
-
-/// One attribute, as floats.
-struct Attribute {
-    std::size_t count = 0;
-    int width = 0;  // components of an element
-    std::vector<float> values;
-
-    bool empty() const { return count == 0; }
-    Float2 float2(std::size_t i) const { return {values[i * width], values[i * width + 1]}; }
-    Float3 float3(std::size_t i) const { return {values[i * width], values[i * width + 1], values[i * width + 2]}; }
-};
 
 /// A primitive where a node places it.
 struct Placed {
     std::size_t node, mesh, primitive;
 };
 
-class GltfReader {
+class GltfReader : private GltfDocument {
 public:
-    explicit GltfReader(const Source& source) : source_(source) {}
+    explicit GltfReader(const Source& source) : GltfDocument(source), source_(source), model_(model()) {}
 
     Scene read() {
-        parse();
-        checkExtensions();
         placeNodes();
         std::vector<Placed> placed = chooseScene();
         readMaterials();
@@ -96,333 +44,11 @@ public:
         scene_.name = std::filesystem::path(source_.name).stem().string();
         scene_.mesh.name = scene_.name;
         for (const std::string& repair : scene_.mesh.repairs) warn(repair);
+        scene_.warnings = std::move(warnings);
         return std::move(scene_);
     }
 
 private:
-    [[noreturn]] void fail(const std::string& what, const std::string& place = {}, const std::string& remedy = {},
-                           ErrorCode code = ErrorCode::badFile) const {
-        throw Error(code, {"gltf: " + what, place.empty() ? source_.name : source_.name + ", " + place, "", remedy});
-    }
-
-    // Each sentence once.
-    void warn(const std::string& sentence) {
-        if (std::find(scene_.warnings.begin(), scene_.warnings.end(), sentence) == scene_.warnings.end()) {
-            scene_.warnings.push_back(sentence);
-        }
-    }
-
-    // ---- container and JSON ----
-
-    void parse() {
-        std::string_view text(reinterpret_cast<const char*>(source_.bytes.data()), source_.bytes.size());
-        if (text.starts_with("glTF")) text = openBinary();
-        document_ = parseJson(text, source_.name);
-        if (!document_.is_object()) fail("the JSON is no object", "", "a .gltf or .glb file of version 2.0");
-        const std::string version = versionOf("version"), least = versionOf("minVersion");
-        if (version.empty()) fail("no asset.version", "asset", "a .gltf or .glb file of version 2.0");
-        if (!version.starts_with("2.") || (!least.empty() && least != "2.0")) {
-            fail("version " + (least.empty() ? version : least) + " is not read", "asset", "an export as glTF 2.0", ErrorCode::unsupported);
-        }
-        takeList("buffers", buffers_);
-        takeList("images", images_);
-        loaded_.resize(buffers_.size());
-        // Nothing below looks at these; pictures and buffers would be opened by tinygltf.
-        for (const char* unread : {"animations", "extras"}) document_.erase(unread);
-
-        const std::string rest = document_.dump();
-        if (rest.size() > 0xffffffffu) fail("more than 4 GiB of JSON", "", "buffers in files of their own");
-        tinygltf::TinyGLTF parser;
-        parser.SetImageLoader(noImage, nullptr);
-        std::string errors, warnings;
-        bool good = false;
-        try {
-            good = parser.LoadASCIIFromString(&model_, &errors, &warnings, rest.c_str(), static_cast<unsigned>(rest.size()), "");
-        } catch (const std::exception& error) {
-            errors += error.what();
-        }
-        std::vector<std::string> lines;
-        for (std::size_t start = 0; start < errors.size();) {
-            const std::size_t end = std::min(errors.find('\n', start), errors.size());
-            const std::string line = errors.substr(start, end - start);
-            // Optional in glTF, which tinygltf 2.7 does not know.
-            if (!line.empty() && line.find("inverseBindMatrices") == std::string::npos) lines.push_back(line);
-            start = end + 1;
-        }
-        if (!good) fail(lines.empty() ? "not a glTF document" : lines.front(), "", "a check with the Khronos glTF validator");
-        for (const std::string& line : lines) warn(line);
-    }
-
-    std::string_view openBinary() {
-        const Bytes all = source_.bytes;
-        if (all.size() < 20) fail("the header ends at byte " + std::to_string(all.size()) + " of 20", "", "the whole file");
-        if (const std::uint32_t version = readU32(all, 4); version != 2) {
-            fail("a binary file of version " + std::to_string(version) + " is not read", "", "an export as glTF 2.0",
-                 ErrorCode::unsupported);
-        }
-        const std::size_t length = readU32(all, 8);
-        if (length > all.size() || length < 20) {
-            fail("the file has " + std::to_string(all.size()) + " bytes where its header says " + std::to_string(length), "",
-                 "the whole file");
-        }
-        std::string_view text;
-        for (std::size_t start = 12; start + 8 <= length;) {
-            const std::size_t size = readU32(all, start);
-            const std::uint32_t kind = readU32(all, start + 4);
-            if (size > length - start - 8) {
-                fail("a chunk of " + std::to_string(size) + " bytes runs past the end", "byte " + std::to_string(start), "the whole file");
-            }
-            const Bytes chunk = all.subspan(start + 8, size);
-            if (start == 12) {
-                if (kind != 0x4e4f534au) fail("the first chunk is not JSON", "byte 12");
-                text = {reinterpret_cast<const char*>(chunk.data()), chunk.size()};
-            } else if (kind == 0x004e4942u && !binary_) {
-                binary_ = chunk;
-            }
-            start += 8 + size;
-        }
-        if (text.empty()) fail("no JSON chunk", "byte 12");
-        return text;
-    }
-
-    std::string versionOf(const char* key) const {
-        const auto asset = document_.find("asset");
-        if (asset == document_.end() || !asset->is_object()) return {};
-        const auto value = asset->find(key);
-        return value != asset->end() && value->is_string() ? value->get<std::string>() : std::string();
-    }
-
-    void takeList(const char* key, Json& list) {
-        list = Json::array();
-        const auto found = document_.find(key);
-        if (found == document_.end()) return;
-        if (!found->is_array()) fail("a list was expected", key);
-        list = std::move(*found);
-        document_.erase(key);
-        for (std::size_t i = 0; i < list.size(); ++i) {
-            if (!list[i].is_object()) fail("an object was expected", at(key, i));
-        }
-    }
-
-    void checkExtensions() {
-        const auto known = [](const std::string& name) {
-            return std::any_of(std::begin(kRead), std::end(kRead), [&](const char* one) { return name == one; });
-        };
-        for (const std::string& name : model_.extensionsRequired) {
-            if (!known(name)) {
-                fail("the required extension " + name + " is not read", "extensionsRequired",
-                     "an export without it (for compressed meshes: gltf-transform or gltfpack can unpack)", ErrorCode::unsupported);
-            }
-        }
-        for (const std::string& name : model_.extensionsUsed) {
-            if (!known(name)) warn("the extension " + name + " is not read");
-        }
-    }
-
-    // ---- bytes ----
-
-    // A file that the document names, only below its own folder.
-    std::vector<std::byte> readBeside(const std::string& uri, const std::string& place) const {
-        const std::filesystem::path path(percentDecoded(uri));
-        bool outside = path.empty() || path.is_absolute() || uri.find("://") != std::string::npos;
-        for (const auto& part : path) outside = outside || part == "..";
-        if (outside || path.native().find('\0') != std::string::npos) {
-            fail("the reference " + inQuotes(uri) + " leads out of the file's folder", place, "a file beside it, or a data URI");
-        }
-        if (source_.folder.empty()) {
-            fail("the file " + inQuotes(uri) + " is needed, and there is no folder to look in", place, "a .glb, or data URIs");
-        }
-        return readFile(source_.folder / path);
-    }
-
-    Bytes bufferBytes(int index) {
-        if (index < 0 || static_cast<std::size_t>(index) >= buffers_.size()) {
-            fail("there is no buffer " + std::to_string(index), "bufferViews");
-        }
-        const std::string place = at("buffers", static_cast<std::size_t>(index));
-        const Json& buffer = buffers_[static_cast<std::size_t>(index)];
-        const auto stated = buffer.find("byteLength");
-        if (stated == buffer.end() || !stated->is_number_unsigned()) fail("byteLength is missing or no positive number", place);
-        const std::uint64_t length = stated->get<std::uint64_t>();
-
-        Bytes bytes;
-        const auto uri = buffer.find("uri");
-        if (uri == buffer.end()) {
-            if (index != 0 || !binary_) fail("it has neither uri nor binary chunk", place);
-            bytes = *binary_;
-        } else if (!uri->is_string()) {
-            fail("uri is no text", place);
-        } else {
-            auto& held = loaded_[static_cast<std::size_t>(index)];
-            if (!held) held = bytesOfUri(uri->get_ref<const std::string&>(), place);
-            bytes = *held;
-        }
-        if (length > bytes.size()) {
-            fail("byteLength is " + std::to_string(length) + ", but there are " + std::to_string(bytes.size()) + " bytes", place,
-                 "the whole file");
-        }
-        return bytes.first(static_cast<std::size_t>(length));
-    }
-
-    std::vector<std::byte> bytesOfUri(const std::string& uri, const std::string& place) const {
-        if (!uri.starts_with("data:")) return readBeside(uri, place);
-        std::string mimeType, text;
-        if (!decodeDataUri(uri, mimeType, text)) fail("the data URI is not base64", place);
-        const Bytes bytes = std::as_bytes(std::span(text));
-        return {bytes.begin(), bytes.end()};
-    }
-
-    Bytes viewBytes(int index, const std::string& place) {
-        if (index < 0 || static_cast<std::size_t>(index) >= model_.bufferViews.size()) {
-            fail("there is no buffer view " + std::to_string(index), place);
-        }
-        const tinygltf::BufferView& view = model_.bufferViews[static_cast<std::size_t>(index)];
-        const Bytes bytes = bufferBytes(view.buffer);
-        if (view.byteOffset > bytes.size() || view.byteLength > bytes.size() - view.byteOffset) {
-            fail("bytes " + std::to_string(view.byteOffset) + " to " + std::to_string(view.byteOffset) + " + " +
-                     std::to_string(view.byteLength) + " lie past the end of a buffer of " + std::to_string(bytes.size()),
-                 at("bufferViews", static_cast<std::size_t>(index)));
-        }
-        return bytes.subspan(view.byteOffset, view.byteLength);
-    }
-
-    // ---- accessors ----
-
-    const tinygltf::Accessor& accessor(int index, const std::string& place) const {
-        if (index < 0 || static_cast<std::size_t>(index) >= model_.accessors.size()) {
-            fail("there is no accessor " + std::to_string(index), place);
-        }
-        return model_.accessors[static_cast<std::size_t>(index)];
-    }
-
-    static double component(const std::byte* from, int type, bool normalized) {
-        const auto as = [&](auto value) {
-            std::memcpy(&value, from, sizeof(value));
-            return value;
-        };
-        switch (type) {
-            case TINYGLTF_COMPONENT_TYPE_BYTE:
-                return normalized ? std::max(as(std::int8_t{}) / 127.0, -1.0) : as(std::int8_t{});
-            case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-                return normalized ? as(std::uint8_t{}) / 255.0 : as(std::uint8_t{});
-            case TINYGLTF_COMPONENT_TYPE_SHORT:
-                return normalized ? std::max(as(std::int16_t{}) / 32767.0, -1.0) : as(std::int16_t{});
-            case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-                return normalized ? as(std::uint16_t{}) / 65535.0 : as(std::uint16_t{});
-            case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-                return as(std::uint32_t{});
-            default:
-                return as(float{});
-        }
-    }
-
-    // Calls store(element, component, value) for every number of the accessor, sparse ones over the others.
-    template <class F>
-    std::size_t forEachNumber(int index, const std::string& user, F&& store) {
-        const tinygltf::Accessor& a = accessor(index, user);
-        const std::string place = at("accessors", static_cast<std::size_t>(index));
-        const int size = tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(a.componentType));
-        const int width = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(a.type));
-        if (size <= 0 || size > 4 || width <= 0 || a.componentType == TINYGLTF_COMPONENT_TYPE_INT) {
-            fail("componentType " + std::to_string(a.componentType) + " is none of glTF 2.0", place);
-        }
-        const auto element = static_cast<std::size_t>(size * width);
-        const auto run = [&](Bytes bytes, std::size_t offset, std::size_t stride, std::size_t count, auto&& target,
-                             const char* what) {
-            if (stride < element) fail("byteStride " + std::to_string(stride) + " is shorter than an element", place);
-            // Every element takes a byte at least, which keeps the product below from overflowing.
-            if (count > bytes.size() || offset > bytes.size() ||
-                (count != 0 && (count - 1) * stride + element > bytes.size() - offset)) {
-                fail(std::to_string(count) + what + " of " + std::to_string(element) + " bytes from byte " + std::to_string(offset) +
-                         " do not fit the buffer view of " + std::to_string(bytes.size()) + " bytes",
-                     place, "the whole file, or a check with the Khronos glTF validator");
-            }
-            for (std::size_t i = 0; i < count; ++i) {
-                const std::size_t to = target(i);
-                for (int c = 0; c < width; ++c) {
-                    store(to, c, component(bytes.data() + offset + i * stride + static_cast<std::size_t>(c * size), a.componentType,
-                                           a.normalized));
-                }
-            }
-        };
-        if (a.bufferView >= 0) {
-            const Bytes bytes = viewBytes(a.bufferView, place);
-            const std::size_t stride = model_.bufferViews[static_cast<std::size_t>(a.bufferView)].byteStride;
-            run(bytes, a.byteOffset, stride == 0 ? element : stride, a.count, [](std::size_t i) { return i; }, " elements");
-        } else if (!a.sparse.isSparse) {
-            fail("it has no buffer view", place);
-        }
-        if (a.sparse.isSparse) {
-            const int type = a.sparse.indices.componentType;
-            if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
-                type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
-                fail("sparse indices of componentType " + std::to_string(type), place);
-            }
-            const Bytes indices = viewBytes(a.sparse.indices.bufferView, place);
-            const auto indexSize = static_cast<std::size_t>(tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(type)));
-            const auto count = static_cast<std::size_t>(std::max(a.sparse.count, 0));
-            const auto offset = static_cast<std::size_t>(a.sparse.indices.byteOffset);
-            if (a.sparse.indices.byteOffset < 0 || a.sparse.values.byteOffset < 0 || count > a.count || offset > indices.size() ||
-                count > (indices.size() - offset) / indexSize) {
-                fail(std::to_string(a.sparse.count) + " sparse indices do not fit their buffer view or accessor", place);
-            }
-            run(
-                viewBytes(a.sparse.values.bufferView, place), static_cast<std::size_t>(a.sparse.values.byteOffset), element, count,
-                [&](std::size_t i) {
-                    const auto to = static_cast<std::size_t>(component(indices.data() + offset + i * indexSize, type, false));
-                    if (to >= a.count) fail("sparse index " + std::to_string(to) + " of " + std::to_string(a.count), place);
-                    return to;
-                },
-                " sparse values");
-        }
-        return a.count;
-    }
-
-    // `widths`: how many components are fine, e.g. {3, 4}.
-    Attribute attribute(int index, const std::string& user, std::initializer_list<int> widths) {
-        const tinygltf::Accessor& a = accessor(index, user);
-        const std::string place = at("accessors", static_cast<std::size_t>(index));
-        Attribute result;
-        result.width = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(a.type));
-        if (std::find(widths.begin(), widths.end(), result.width) == widths.end()) {
-            fail(std::to_string(result.width) + " components where " + user + " takes " + std::to_string(*widths.begin()), place);
-        }
-        result.count = checkedCount(a, place);
-        result.values.assign(result.count * static_cast<std::size_t>(result.width), 0.0f);
-        forEachNumber(index, user, [&](std::size_t i, int c, double value) {
-            result.values[i * static_cast<std::size_t>(result.width) + static_cast<std::size_t>(c)] = static_cast<float>(value);
-        });
-        return result;
-    }
-
-    std::vector<std::uint32_t> indices(int index, const std::string& user) {
-        const tinygltf::Accessor& a = accessor(index, user);
-        const std::string place = at("accessors", static_cast<std::size_t>(index));
-        if (a.type != TINYGLTF_TYPE_SCALAR || a.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT) {
-            fail("indices must be unsigned whole numbers", place);
-        }
-        std::vector<std::uint32_t> result(checkedCount(a, place), 0);
-        forEachNumber(index, user, [&](std::size_t i, int, double value) {
-            result[i] = value < 0 ? 0xffffffffu : static_cast<std::uint32_t>(value);
-        });
-        return result;
-    }
-
-    // The bytes must be able to hold what the count claims, before memory is taken for it.
-    std::size_t checkedCount(const tinygltf::Accessor& a, const std::string& place) {
-        std::size_t most = kFreeElements;
-        if (a.bufferView >= 0) {
-            most = viewBytes(a.bufferView, place).size();
-        } else {
-            most = std::max(most, source_.bytes.size());
-        }
-        if (a.count == 0 || a.count > most) {
-            fail(std::to_string(a.count) + " elements where the bytes can hold 1 to " + std::to_string(most), place,
-                 "the whole file, or a check with the Khronos glTF validator");
-        }
-        return a.count;
-    }
-
     // ---- nodes ----
 
     void placeNodes() {
@@ -520,10 +146,12 @@ private:
         std::vector<int> roots;
         if (!model_.scenes.empty()) {
             const int chosen = std::max(model_.defaultScene, 0);
-            if (static_cast<std::size_t>(chosen) >= model_.scenes.size()) fail("there is no scene " + std::to_string(chosen), "scene");
+            if (static_cast<std::size_t>(chosen) >= model_.scenes.size())
+                fail("there is no scene " + std::to_string(chosen), "scene");
             roots = model_.scenes[static_cast<std::size_t>(chosen)].nodes;
             if (model_.scenes.size() > 1) {
-                warn("of " + std::to_string(model_.scenes.size()) + " scenes only number " + std::to_string(chosen) + " was read");
+                warn("of " + std::to_string(model_.scenes.size()) + " scenes only number " + std::to_string(chosen) +
+                     " was read");
             }
         } else {
             std::vector<char> isChild(model_.nodes.size(), 0);
@@ -561,8 +189,10 @@ private:
             }
             cameraNode_ = n;
         }
-        if (const auto light = node.extensions.find("KHR_lights_punctual"); light != node.extensions.end()) readLight(n, light->second);
-        if (node.extensions.count("EXT_mesh_gpu_instancing") != 0) warn("node " + std::to_string(n) + ": its GPU instances are left out");
+        if (const auto light = node.extensions.find("KHR_lights_punctual"); light != node.extensions.end())
+            readLight(n, light->second);
+        if (node.extensions.count("EXT_mesh_gpu_instancing") != 0)
+            warn("node " + std::to_string(n) + ": its GPU instances are left out");
         if (node.mesh < 0) return;
         if (static_cast<std::size_t>(node.mesh) >= model_.meshes.size()) {
             fail("there is no mesh " + std::to_string(node.mesh), at("nodes", n));
@@ -574,7 +204,8 @@ private:
         for (std::size_t p = 0; p < model_.meshes[m].primitives.size(); ++p) {
             const tinygltf::Primitive& primitive = model_.meshes[m].primitives[p];
             const std::string place = primitivePlace({n, m, p});
-            if (primitive.mode < 0 || primitive.mode > 6) fail("mode " + std::to_string(primitive.mode) + " is none of 0 to 6", place);
+            if (primitive.mode < 0 || primitive.mode > 6)
+                fail("mode " + std::to_string(primitive.mode) + " is none of 0 to 6", place);
             if (primitive.mode < TINYGLTF_MODE_TRIANGLES) {
                 warn(place + ": points and lines are left out");
             } else if (primitive.attributes.count("POSITION") == 0) {
@@ -592,7 +223,8 @@ private:
     void readLight(std::size_t n, const tinygltf::Value& extension) {
         const tinygltf::Value* index = extension.Has("light") ? &extension.Get("light") : nullptr;
         const int i = index != nullptr && index->IsInt() ? index->GetNumberAsInt() : -1;
-        if (i < 0 || static_cast<std::size_t>(i) >= model_.lights.size()) fail("there is no light " + std::to_string(i), at("nodes", n));
+        if (i < 0 || static_cast<std::size_t>(i) >= model_.lights.size())
+            fail("there is no light " + std::to_string(i), at("nodes", n));
         const tinygltf::Light& light = model_.lights[static_cast<std::size_t>(i)];
         if (light.type != "directional" || lightRead_) {
             warn("node " + std::to_string(n) + ": the " + light.type + " light is left out" +
@@ -621,7 +253,8 @@ private:
         camera.eye = Float3(glm::dvec3(world[3]));
         const Float3 forward = unitOrZero(-glm::dvec3(world[2])), up = unitOrZero(glm::dvec3(world[1]));
         double aspect = 1.0;
-        bool good = finite(camera.eye) && forward != Float3(0.0f) && up != Float3(0.0f) && std::abs(glm::dot(forward, up)) < 0.999f;
+        bool good =
+            finite(camera.eye) && forward != Float3(0.0f) && up != Float3(0.0f) && std::abs(glm::dot(forward, up)) < 0.999f;
         if (from.type == "orthographic") {
             camera.orthographicHeight = static_cast<float>(2.0 * std::abs(from.orthographic.ymag));
             aspect = std::abs(from.orthographic.xmag / from.orthographic.ymag);
@@ -697,8 +330,8 @@ private:
         }
         m.alphaCutoff = inRange(from.alphaCutoff, 0, 1e30, called, "alphaCutoff");
         m.doubleSided = from.doubleSided;
-        m.transmission =
-            inRange(number(extensions, "KHR_materials_transmission", "transmissionFactor", 0), 0, 1, called, "transmissionFactor");
+        m.transmission = inRange(number(extensions, "KHR_materials_transmission", "transmissionFactor", 0), 0, 1, called,
+                                 "transmissionFactor");
         m.indexOfRefraction = inRange(number(extensions, "KHR_materials_ior", "ior", 1.5), 1, 3, called, "ior");
         readVolume(extensions, called, m);
         readEmission(from, called, m);
@@ -717,7 +350,8 @@ private:
     void readVolume(const tinygltf::ExtensionMap& extensions, const std::string& called, Material& m) {
         constexpr const char* kVolume = "KHR_materials_volume";
         m.thickness = inRange(number(extensions, kVolume, "thicknessFactor", 0), 0, 1e30, called, "thicknessFactor");
-        m.attenuationDistance = inRange(number(extensions, kVolume, "attenuationDistance", 0), 0, 3e38, called, "attenuationDistance");
+        m.attenuationDistance =
+            inRange(number(extensions, kVolume, "attenuationDistance", 0), 0, 3e38, called, "attenuationDistance");
         if (!hasMember(extensions, kVolume, "attenuationColor")) return;
         const tinygltf::Value& colour = extensions.at(kVolume).Get("attenuationColor");
         for (int c = 0; c < 3; ++c) {
@@ -733,7 +367,8 @@ private:
         if (from.emissiveFactor.size() != 3) return;
         const double strength = number(from.extensions, "KHR_materials_emissive_strength", "emissiveStrength", 1);
         for (int c = 0; c < 3; ++c) {
-            m.emission[c] = inRange(from.emissiveFactor[static_cast<std::size_t>(c)] * strength, 0, 1e30, called, "emissiveFactor");
+            m.emission[c] =
+                inRange(from.emissiveFactor[static_cast<std::size_t>(c)] * strength, 0, 1e30, called, "emissiveFactor");
         }
         // The factor of a textured glow is mostly 1 and the texture mostly black: without it the whole surface would shine.
         if (from.emissiveTexture.index >= 0 && m.emission != Float3(0.0f)) {
@@ -756,7 +391,7 @@ private:
             warn(at("textures", static_cast<std::size_t>(info.index)) + ": it names no picture of a kind that is read");
             return;
         }
-        if (static_cast<std::size_t>(image) >= images_.size()) fail("there is no image " + std::to_string(image), place);
+        if (static_cast<std::size_t>(image) >= images().size()) fail("there is no image " + std::to_string(image), place);
         baseTextures_[index] = image;
         Material& m = scene_.materials[index];
         constexpr const char* kTransform = "KHR_texture_transform";
@@ -767,7 +402,8 @@ private:
             if (!hasMember(info.extensions, kTransform, key)) return;
             const tinygltf::Value& value = info.extensions.at(kTransform).Get(key);
             for (int c = 0; c < 2; ++c) {
-                if (!value.IsArray() || value.ArrayLen() != 2 || !value.Get(c).IsNumber()) fail(std::string(key) + " is not two numbers", place);
+                if (!value.IsArray() || value.ArrayLen() != 2 || !value.Get(c).IsNumber())
+                    fail(std::string(key) + " is not two numbers", place);
                 into[c] = static_cast<float>(value.Get(c).GetNumberAsDouble());
             }
         };
@@ -789,8 +425,8 @@ private:
                     scene_.textures.push_back(picture(static_cast<std::size_t>(image)));
                     entry->second = static_cast<int>(scene_.textures.size()) - 1;
                 } catch (const Error& error) {
-                    warn("picture " + std::to_string(image) + " is missing or broken, the plain base colour holds (" + error.text().what +
-                         ")");
+                    warn("picture " + std::to_string(image) + " is missing or broken, the plain base colour holds (" +
+                         error.text().what + ")");
                 }
             }
             scene_.materials[i].baseColourTexture = entry->second;
@@ -799,7 +435,7 @@ private:
 
     Picture picture(std::size_t index) {
         const std::string place = at("images", index);
-        const Json& image = images_[index];
+        const Json& image = images()[index];
         if (const auto uri = image.find("uri"); uri != image.end()) {
             if (!uri->is_string()) fail("uri is no text", place);
             const std::string& text = uri->get_ref<const std::string&>();
@@ -877,7 +513,8 @@ private:
                 fail(std::to_string(other->count) + " values of an attribute for " + std::to_string(count) + " vertices", place);
             }
         }
-        if (mesh.positions.size() + count > kMostCounted) fail("more than 2^32 vertices", place, "fewer instances", ErrorCode::unsupported);
+        if (mesh.positions.size() + count > kMostCounted)
+            fail("more than 2^32 vertices", place, "fewer instances", ErrorCode::unsupported);
 
         Vertices added;
         added.first = static_cast<std::uint32_t>(mesh.positions.size());
@@ -894,7 +531,8 @@ private:
                 added.mirrored[poses.empty() ? 0 : i] = glm::determinant(linear) < 0;
             }
             mesh.positions.push_back(Float3(glm::dvec3(m * glm::dvec4(glm::dvec3(positions.float3(i)), 1.0))));
-            if (anyNormals_) mesh.normals.push_back(normals.empty() ? Float3(0.0f) : unitOrZero(turn * glm::dvec3(normals.float3(i))));
+            if (anyNormals_)
+                mesh.normals.push_back(normals.empty() ? Float3(0.0f) : unitOrZero(turn * glm::dvec3(normals.float3(i))));
             if (anyTexcoords_) {
                 const Float2 uv = texcoords.empty() ? Float2(0.0f) : texcoords.float2(i);
                 mesh.texcoords.push_back(std::isfinite(uv.x) && std::isfinite(uv.y) ? uv : Float2(0.0f));
@@ -954,8 +592,8 @@ private:
                 const float joint = joints.values[k];
                 if (!(joint >= 0.0f && joint < static_cast<float>(palette.size()))) {
                     if (!counts) continue;
-                    fail("vertex " + std::to_string(k / 4) + " follows joint " + std::to_string(static_cast<long long>(joint)) + " of " +
-                             std::to_string(palette.size()),
+                    fail("vertex " + std::to_string(k / 4) + " follows joint " + std::to_string(static_cast<long long>(joint)) +
+                             " of " + std::to_string(palette.size()),
                          place + "." + jointName, "a skin with all joints that its vertices name");
                 }
                 const auto j = static_cast<std::uint32_t>(joint);
@@ -975,8 +613,10 @@ private:
                 poses[i] = palette[firstJoint[i]];
             }
         }
-        if (zero != 0) repaired(place + ": " + std::to_string(zero) + " vertices whose joint weights sum to zero follow their first joint");
-        if (scaled != 0) repaired(place + ": the joint weights of " + std::to_string(scaled) + " vertices were scaled to sum to one");
+        if (zero != 0)
+            repaired(place + ": " + std::to_string(zero) + " vertices whose joint weights sum to zero follow their first joint");
+        if (scaled != 0)
+            repaired(place + ": the joint weights of " + std::to_string(scaled) + " vertices were scaled to sum to one");
         return poses;
     }
 
@@ -988,13 +628,16 @@ private:
         if (skin.inverseBindMatrices >= 0) {
             inverse = attribute(skin.inverseBindMatrices, place + ".inverseBindMatrices", {16});
             if (inverse.count < skin.joints.size()) {
-                fail(std::to_string(inverse.count) + " inverse bind matrices for " + std::to_string(skin.joints.size()) + " joints", place);
+                fail(std::to_string(inverse.count) + " inverse bind matrices for " + std::to_string(skin.joints.size()) +
+                         " joints",
+                     place);
             }
         }
         std::vector<glm::dmat4> palette;
         for (std::size_t j = 0; j < skin.joints.size(); ++j) {
             const int node = skin.joints[j];
-            if (node < 0 || static_cast<std::size_t>(node) >= world_.size()) fail("there is no node " + std::to_string(node), place);
+            if (node < 0 || static_cast<std::size_t>(node) >= world_.size())
+                fail("there is no node " + std::to_string(node), place);
             glm::dmat4 bind(1.0);
             if (!inverse.empty()) {
                 for (int k = 0; k < 16; ++k) bind[k / 4][k % 4] = inverse.values[j * 16 + static_cast<std::size_t>(k)];
@@ -1019,8 +662,8 @@ private:
             corners = indices(from.indices, place + ".indices");
             for (std::size_t i = 0; i < corners.size(); ++i) {
                 if (corners[i] >= count) {
-                    fail("index " + std::to_string(i) + " is " + std::to_string(corners[i]) + ", but there are " + std::to_string(count) +
-                             " vertices",
+                    fail("index " + std::to_string(i) + " is " + std::to_string(corners[i]) + ", but there are " +
+                             std::to_string(count) + " vertices",
                          place + ".indices");
                 }
             }
@@ -1036,7 +679,8 @@ private:
         const auto triangle = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
             for (std::uint32_t v : {a, b, c}) {
                 if (!finite(mesh.positions[vertices.first + v])) {
-                    fail("vertex " + std::to_string(v) + " is not finite in world space", place + ".POSITION", "the mesh as its tool exports it anew");
+                    fail("vertex " + std::to_string(v) + " is not finite in world space", place + ".POSITION",
+                         "the mesh as its tool exports it anew");
                 }
             }
             if (vertices.mirrored[vertices.mirrored.size() == 1 ? 0 : a]) std::swap(b, c);
@@ -1065,9 +709,11 @@ private:
     // Corners of its own with the face normal, as glTF asks for where normals are missing and other primitives have them.
     void flatTriangle(std::uint32_t first, std::array<std::uint32_t, 3> corners) {
         Mesh& mesh = scene_.mesh;
-        const glm::dvec3 a(mesh.positions[first + corners[0]]), b(mesh.positions[first + corners[1]]), c(mesh.positions[first + corners[2]]);
+        const glm::dvec3 a(mesh.positions[first + corners[0]]), b(mesh.positions[first + corners[1]]),
+            c(mesh.positions[first + corners[2]]);
         const Float3 normal = unitOrZero(glm::cross(b - a, c - a));
-        if (mesh.positions.size() + 3 > kMostCounted) fail("more than 2^32 vertices", "", "fewer instances", ErrorCode::unsupported);
+        if (mesh.positions.size() + 3 > kMostCounted)
+            fail("more than 2^32 vertices", "", "fewer instances", ErrorCode::unsupported);
         for (std::uint32_t corner : corners) {
             const std::size_t v = first + corner;
             mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
@@ -1107,10 +753,7 @@ private:
 
     const Source& source_;
     Scene scene_;
-    Json document_, buffers_, images_;
-    std::optional<Bytes> binary_;
-    std::vector<std::optional<std::vector<std::byte>>> loaded_;  // buffers from files and data URIs
-    tinygltf::Model model_;
+    const tinygltf::Model& model_;
     std::vector<glm::dmat4> world_;  // of every node
     std::optional<std::size_t> cameraNode_;
     bool lightRead_ = false;

@@ -2,13 +2,12 @@
 #include <vitrail/io/image.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <memory>
 #include <string_view>
+#include <vector>
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -38,7 +37,7 @@ std::string lowerExtension(const std::filesystem::path& file) {
     return extension.empty() ? extension : extension.substr(1);
 }
 
-// By the first bytes, since pictures inside a glTF file have no name; empty where they say nothing.
+// By the first bytes, since pictures inside a glTF file have no name; empty where they say nothing, and the name's ending counts.
 std::string formatOf(std::span<const std::byte> bytes) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     struct Mark {
@@ -46,9 +45,13 @@ std::string formatOf(std::span<const std::byte> bytes) {
         const char* format;
     };
     using namespace std::string_view_literals;
-    constexpr Mark kMarks[] = {{"\x89PNG\r\n\x1a\n"sv, "png"},    {"\xff\xd8\xff"sv, "jpeg"}, {"#?"sv, "hdr"},     {"\x76\x2f\x31\x01"sv, "openexr"},
-                               {"II*\0"sv, "tiff"},     {"MM\0*"sv, "tiff"},        {"BM"sv, "bmp"},     {"GIF8"sv, "gif"},
-                               {"8BPS"sv, "psd"},       {"SDPX"sv, "dpx"},          {"XPDS"sv, "dpx"}};
+    constexpr Mark kMarks[] = {{"\x89PNG\r\n\x1a\n"sv, "png"},
+                               {"\xff\xd8\xff"sv, "jpeg"},
+                               {"#?"sv, "hdr"},
+                               {"\x76\x2f\x31\x01"sv, "openexr"},
+                               {"II*\0"sv, "tiff"},
+                               {"MM\0*"sv, "tiff"},
+                               {"BM"sv, "bmp"}};
     for (const Mark& mark : kMarks) {
         if (text.starts_with(mark.bytes)) return mark.format;
     }
@@ -69,7 +72,18 @@ void expectWholePng(std::span<const std::byte> bytes, const std::string& name) {
     fail("a chunk runs past the end, or the last one is missing", name, "the whole file");
 }
 
-float fromSrgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
+// From a table: 8- and 16-bit values are whole multiples of 1/65535.
+float fromSrgb(float v) {
+    static const std::vector<float> kTable = [] {
+        std::vector<float> table(65536);
+        for (std::size_t i = 0; i < table.size(); ++i) {
+            const double x = double(i) / 65535.0;
+            table[i] = static_cast<float>(x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4));
+        }
+        return table;
+    }();
+    return kTable[static_cast<std::size_t>(std::min(v, 1.0f) * 65535.0f + 0.5f)];
+}
 float toSrgb(float v) { return v <= 0.0031308f ? v * 12.92f : 1.055f * std::pow(v, 1.0f / 2.4f) - 0.055f; }
 
 float tidy(float v) { return std::isfinite(v) && v > 0.0f ? v : 0.0f; }
@@ -105,16 +119,13 @@ std::string reasonOf(OIIO::ImageInput* input) {
     return reason.empty() ? "the format's reader gives no reason" : reason;
 }
 
-Picture decode(std::span<const std::byte> bytes, const std::string& name) {
-    if (bytes.empty()) fail("the file is empty", name);
-    std::string format = formatOf(bytes);
-    if (format == "hdr") return io_detail::readRadiance(bytes, name);
-    if (format == "png") expectWholePng(bytes, name);
+Picture readWithOpenImageIO(std::span<const std::byte> bytes, std::string format, const std::string& name) {
     if (format.empty()) format = lowerExtension(name);
     std::unique_ptr<OIIO::ImageInput> input = format.empty() ? nullptr : OIIO::ImageInput::create(format);
     if (!input) {
         reasonOf(nullptr);
-        fail("its first bytes are those of no known format", name, ".hdr, .exr, .png, .jpg, .tif or .webp", ErrorCode::unsupported);
+        fail("its first bytes are those of no known format", name, ".hdr, .exr, .png, .jpg, .tif or .webp",
+             ErrorCode::unsupported);
     }
     if (!input->supports("ioproxy")) {
         fail("the format " + format + " is not read", name, ".hdr, .exr, .png, .jpg, .tif or .webp", ErrorCode::unsupported);
@@ -151,6 +162,22 @@ Picture decode(std::span<const std::byte> bytes, const std::string& name) {
     input->close();
     reasonOf(input.get());
     return upright(std::move(picture), orientation);
+}
+
+Picture decode(std::span<const std::byte> bytes, const std::string& name) {
+    if (bytes.empty()) fail("the file is empty", name);
+    const std::string format = formatOf(bytes);
+    if (format == "hdr") return io_detail::readRadiance(bytes, name);
+    if (format == "png") expectWholePng(bytes, name);
+    try {
+        return readWithOpenImageIO(bytes, format, name);
+    } catch (const Error&) {
+        throw;
+    } catch (const std::exception& error) {
+        // Some of OpenImageIO's readers let those of the standard library through.
+        fail(std::string("the ") + (format.empty() ? "format's" : format) + " reader gave up: " + error.what(), name,
+             "the whole file");
+    }
 }
 
 void write(const std::filesystem::path& path, const std::string& format, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
@@ -230,9 +257,8 @@ void savePicture(const std::filesystem::path& file, const Picture& picture, floa
     OIIO::ImageSpec spec(w, h, channels, OIIO::TypeDesc::UINT8);
     spec.attribute("oiio:UnassociatedAlpha", 1);
     spec.attribute("oiio:ColorSpace", "sRGB");
-    io_detail::writeWhole(file, [&](const std::filesystem::path& path) {
-        write(path, "png", spec, OIIO::TypeDesc::UINT8, values.data(), name);
-    });
+    io_detail::writeWhole(
+        file, [&](const std::filesystem::path& path) { write(path, "png", spec, OIIO::TypeDesc::UINT8, values.data(), name); });
 }
 
 }  // namespace v0

@@ -1,6 +1,6 @@
-// io/json_scene.cpp: the small scene file of people: meshes and shapes placed by transforms, materials, camera, light, environment.
-// The format is told in host/io/README.md; members carry the names of the structs they fill. What is not known is an error, since a
-// misspelt key would otherwise do nothing.
+// io/json_scene.cpp: the small scene file of people: meshes and shapes placed by transforms, materials, camera, light,
+// environment. The format is told in host/io/README.md; members carry the names of the structs they fill. What is not known is an
+// error, since a misspelt key would otherwise do nothing.
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -67,7 +67,8 @@ public:
         if (!has(key)) return;
         const Json& value = (*this)[key];
         if (!value.is_number_unsigned() || value.get<std::uint64_t>() < least || value.get<std::uint64_t>() > most) {
-            fail(value.dump() + " is no whole number from " + std::to_string(least) + " to " + std::to_string(most), placeOf(key));
+            fail(value.dump() + " is no whole number from " + std::to_string(least) + " to " + std::to_string(most),
+                 placeOf(key));
         }
         into = value.get<std::uint32_t>();
     }
@@ -118,7 +119,8 @@ Mesh withFaceNormals(const Mesh& mesh) {
     flat.materials = mesh.materials;
     flat.repairs = mesh.repairs;
     for (std::size_t t = 0; t + 3 <= mesh.indices.size(); t += 3) {
-        const glm::dvec3 a(mesh.positions[mesh.indices[t]]), b(mesh.positions[mesh.indices[t + 1]]), c(mesh.positions[mesh.indices[t + 2]]);
+        const glm::dvec3 a(mesh.positions[mesh.indices[t]]), b(mesh.positions[mesh.indices[t + 1]]),
+            c(mesh.positions[mesh.indices[t + 2]]);
         const Float3 normal = unitOrZero(glm::cross(b - a, c - a));
         for (std::size_t k = t; k < t + 3; ++k) {
             const std::uint32_t v = mesh.indices[k];
@@ -155,7 +157,8 @@ public:
 private:
     std::filesystem::path beside(const Members& where, const char* key) const {
         const std::string named = where.text(key);
-        if (named.empty() || named.find('\0') != std::string::npos) where.fail("the name of a file was expected", where.placeOf(key));
+        if (named.empty() || named.find('\0') != std::string::npos)
+            where.fail("the name of a file was expected", where.placeOf(key));
         if (source_.folder.empty()) {
             where.fail("the file " + inQuotes(named) + " is needed, and there is no folder to look in", where.placeOf(key),
                        "a scene read from a file");
@@ -165,9 +168,9 @@ private:
 
     void readMaterial(const Json& json, const std::string& place) {
         const Members from(json, source_.name, place,
-                           {"name", "baseColour", "alpha", "alphaMode", "alphaCutoff", "doubleSided", "transmission", "indexOfRefraction",
-                            "roughness", "emission", "thickness", "attenuationDistance", "attenuationColour", "baseColourTexture",
-                            "textureOffset", "textureScale", "textureRotation"});
+                           {"name", "baseColour", "alpha", "alphaMode", "alphaCutoff", "doubleSided", "transmission",
+                            "indexOfRefraction", "roughness", "emission", "thickness", "attenuationDistance", "attenuationColour",
+                            "baseColourTexture", "textureOffset", "textureScale", "textureRotation"});
         Material m;
         m.name = from.text("name");
         if (m.name.empty()) from.fail("a name was expected, by which meshes ask for the material", from.placeOf("name"));
@@ -234,7 +237,8 @@ private:
         const std::filesystem::path file = beside(from, "file");
         std::string ending = file.extension().string();
         for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-        if (ending == ".json") from.fail("a scene within a scene", from.placeOf("file"), "the meshes it names", ErrorCode::unsupported);
+        if (ending == ".json")
+            from.fail("a scene within a scene", from.placeOf("file"), "the meshes it names", ErrorCode::unsupported);
         return loadScene(file);
     }
 
@@ -268,12 +272,14 @@ private:
         } else {
             members.read("scale", scale, -kAny, kAny);
         }
-        if (scale.x == 0 || scale.y == 0 || scale.z == 0) members.fail("a factor of 0 flattens the mesh", members.placeOf("scale"));
+        if (scale.x == 0 || scale.y == 0 || scale.z == 0)
+            members.fail("a factor of 0 flattens the mesh", members.placeOf("scale"));
         members.read("translate", translate, -kAny, kAny);
         glm::dmat3 linear(1.0);
         if (members.has("rotate")) {
             const Members turn(members["rotate"], source_.name, members.placeOf("rotate"), {"axis", "degrees"});
-            if (!turn.has("axis") || !turn.has("degrees")) turn.fail("\"axis\" and \"degrees\" were expected", members.placeOf("rotate"));
+            if (!turn.has("axis") || !turn.has("degrees"))
+                turn.fail("\"axis\" and \"degrees\" were expected", members.placeOf("rotate"));
             Float3 axis(0.0f);
             float degrees = 0.0f;
             turn.read("axis", axis, -kAny, kAny);
@@ -318,8 +324,10 @@ private:
                 Mesh& bare = whole.colours.empty() ? whole : mesh;
                 bare.colours.assign(bare.positions.size(), Float4(1.0f));
             }
-            if (std::max(whole.positions.size() + mesh.positions.size(), whole.triangleCount() + mesh.triangleCount()) > 0xffffffffu) {
-                throw Error(ErrorCode::unsupported, {"scene: more than 2^32 vertices or triangles", source_.name, "", "fewer meshes"});
+            if (std::max(whole.positions.size() + mesh.positions.size(), whole.triangleCount() + mesh.triangleCount()) >
+                0xffffffffu) {
+                throw Error(ErrorCode::unsupported,
+                            {"scene: more than 2^32 vertices or triangles", source_.name, "", "fewer meshes"});
             }
         }
         whole.append(mesh);
@@ -385,8 +393,8 @@ private:
                     entry->second = static_cast<int>(scene_.textures.size()) - 1;
                 } catch (const Error& error) {
                     scene_.warnings.push_back("material \"" + scene_.materials[material].name +
-                                              "\": its picture is missing or broken, the plain base colour holds (" + error.text().what +
-                                              ")");
+                                              "\": its picture is missing or broken, the plain base colour holds (" +
+                                              error.text().what + ")");
                 }
             }
             scene_.materials[material].baseColourTexture = entry->second;

@@ -16,8 +16,8 @@ struct Reader {
     Scene (*read)(const Source&);
 };
 
-constexpr Reader kReaders[] = {{"ply", io_detail::readPly},   {"stl", io_detail::readStl},   {"off", io_detail::readOff},
-                               {"obj", io_detail::readObj},   {"gltf", io_detail::readGltf}, {"glb", io_detail::readGltf},
+constexpr Reader kReaders[] = {{"ply", io_detail::readPly},       {"stl", io_detail::readStl},   {"off", io_detail::readOff},
+                               {"obj", io_detail::readObj},       {"gltf", io_detail::readGltf}, {"glb", io_detail::readGltf},
                                {"json", io_detail::readJsonScene}};
 
 const Reader& readerOf(std::string format, const std::string& name) {

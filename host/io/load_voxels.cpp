@@ -1,5 +1,5 @@
-// io/load_voxels.cpp: occupancy as other tools write it: NumPy arrays, raw bits or bytes, MagicaVoxel scenes. No count in a file is
-// trusted before the bytes for it are there.
+// io/load_voxels.cpp: occupancy as other tools write it: NumPy arrays, raw bits or bytes, MagicaVoxel scenes. No count in a file
+// is trusted before the bytes for it are there.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -88,16 +88,19 @@ NpyHeader npyHeader(std::string_view text, const std::filesystem::path& file) {
 VoxelBits loadNpy(const std::filesystem::path& file, const Grid& grid) {
     const Bytes bytes = readFile(file);
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    if (!text.starts_with("\x93NUMPY") || text.size() < 12) failVoxels("not a .npy file", file, "an array as numpy.save writes it");
+    if (!text.starts_with("\x93NUMPY") || text.size() < 12)
+        failVoxels("not a .npy file", file, "an array as numpy.save writes it");
     const auto byte = [&](std::size_t i) { return std::size_t(std::to_integer<std::uint8_t>(bytes[i])); };
     const std::size_t start = byte(6) == 1 ? 10 : 12;
     std::size_t length = byte(8) | byte(9) << 8;
     if (start == 12) length |= byte(10) << 16 | byte(11) << 24;
-    if (byte(6) < 1 || byte(6) > 3) failVoxels("version " + std::to_string(byte(6)) + " of .npy", file, "version 1, 2 or 3", ErrorCode::unsupported);
+    if (byte(6) < 1 || byte(6) > 3)
+        failVoxels("version " + std::to_string(byte(6)) + " of .npy", file, "version 1, 2 or 3", ErrorCode::unsupported);
     if (length > text.size() - start) failVoxels("the header runs past the end", file, kWhole);
     const NpyHeader header = npyHeader(text.substr(start, length), file);
     if (header.shape.size() != 3) {
-        failVoxels("an array of " + std::to_string(header.shape.size()) + " dimensions", file, "three: [z][y][x]", ErrorCode::badInput);
+        failVoxels("an array of " + std::to_string(header.shape.size()) + " dimensions", file, "three: [z][y][x]",
+                   ErrorCode::badInput);
     }
     expectSize(header.shape[2], header.shape[1], header.shape[0], grid, file);
 
@@ -106,7 +109,8 @@ VoxelBits loadNpy(const std::filesystem::path& file, const Grid& grid) {
     if (!type.empty() && std::string_view("<>|=").find(type[0]) != std::string_view::npos) type.remove_prefix(1);
     constexpr std::array<std::string_view, 9> kTypes = {"b1", "u1", "i1", "u2", "i2", "u4", "i4", "u8", "i8"};
     if (std::find(kTypes.begin(), kTypes.end(), type) == kTypes.end()) {
-        failVoxels("an array of type '" + header.type + "'", file, "bool or whole numbers, such as array.astype('u1')", ErrorCode::unsupported);
+        failVoxels("an array of type '" + header.type + "'", file, "bool or whole numbers, such as array.astype('u1')",
+                   ErrorCode::unsupported);
     }
     const auto width = static_cast<std::size_t>(type[1] - '0');
     const std::uint64_t have = text.size() - start - length, need = grid.voxelCount() * width;
@@ -124,8 +128,8 @@ VoxelBits loadNpy(const std::filesystem::path& file, const Grid& grid) {
     for (std::uint32_t z = 0; z < size.z; ++z) {
         for (std::uint32_t y = 0; y < size.y; ++y) {
             for (std::uint32_t x = 0; x < size.x; ++x) {
-                const std::uint64_t i = header.fortran ? z + size.z * (y + std::uint64_t(size.y) * x)
-                                                       : x + size.x * (y + std::uint64_t(size.y) * z);
+                const std::uint64_t i =
+                    header.fortran ? z + size.z * (y + std::uint64_t(size.y) * x) : x + size.x * (y + std::uint64_t(size.y) * z);
                 if (occupied(i)) voxels.set(x, y, z);
             }
         }
@@ -140,13 +144,17 @@ void checkRawHeader(const std::filesystem::path& headerFile, const Grid& grid) {
     const auto header = parseJson({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, headerFile.string());
     if (!header.is_object() || !header.contains("size")) return;
     const auto& size = header["size"];
-    if (!size.is_array() || size.size() != 3 || !std::all_of(size.begin(), size.end(), [](const auto& v) { return v.is_number_unsigned(); })) {
+    if (!size.is_array() || size.size() != 3 ||
+        !std::all_of(size.begin(), size.end(), [](const auto& v) { return v.is_number_unsigned(); })) {
         failVoxels("\"size\" is not three whole numbers", headerFile, "the header as it was written");
     }
-    expectSize(size[0].template get<std::uint64_t>(), size[1].template get<std::uint64_t>(), size[2].template get<std::uint64_t>(), grid, headerFile);
-    for (const auto& [key, value] : {std::pair("order", "x fastest, then y, then z"), std::pair("bitOrder", "least significant bit first")}) {
+    expectSize(size[0].template get<std::uint64_t>(), size[1].template get<std::uint64_t>(),
+               size[2].template get<std::uint64_t>(), grid, headerFile);
+    for (const auto& [key, value] :
+         {std::pair("order", "x fastest, then y, then z"), std::pair("bitOrder", "least significant bit first")}) {
         if (header.contains(key) && header[key] != value) {
-            failVoxels(std::string("\"") + key + "\" is " + header[key].dump(), headerFile, std::string("\"") + value + "\"", ErrorCode::unsupported);
+            failVoxels(std::string("\"") + key + "\" is " + header[key].dump(), headerFile, std::string("\"") + value + "\"",
+                       ErrorCode::unsupported);
         }
     }
 }
@@ -159,8 +167,8 @@ VoxelBits loadRaw(const std::filesystem::path& file, const Grid& grid) {
     const std::uint64_t count = grid.voxelCount(), asBits = count / 8 + (count % 8 != 0);
     if (bytes.size() != asBits && bytes.size() != count) {
         const Uint3 size = grid.size();
-        failVoxels(std::to_string(bytes.size()) + " bytes; " + sizeText(size.x, size.y, size.z) + " voxels take " + std::to_string(asBits) +
-                       " as bits or " + std::to_string(count) + " as bytes",
+        failVoxels(std::to_string(bytes.size()) + " bytes; " + sizeText(size.x, size.y, size.z) + " voxels take " +
+                       std::to_string(asBits) + " as bits or " + std::to_string(count) + " as bytes",
                    file, "a grid of the file's size, or the whole file", ErrorCode::badInput);
     }
     VoxelBits voxels(grid);
@@ -183,8 +191,8 @@ using Int3 = std::array<std::int64_t, 3>;
 
 /// Where a node puts its models: a signed permutation, then a shift.
 struct VoxTransform {
-    std::array<int, 3> axis{0, 1, 2};   // row r takes the coordinate axis[r] ...
-    std::array<int, 3> sign{1, 1, 1};   // ... times sign[r]
+    std::array<int, 3> axis{0, 1, 2};  // row r takes the coordinate axis[r] ...
+    std::array<int, 3> sign{1, 1, 1};  // ... times sign[r]
     Int3 shift{0, 0, 0};
 
     VoxTransform then(const VoxTransform& inner) const {
@@ -317,7 +325,8 @@ private:
             for (auto& shift : n.transform.shift) {
                 while (from != last && *from == ' ') ++from;
                 const auto [next, failed] = std::from_chars(from, last, shift);
-                if (failed != std::errc() || shift < -1000000 || shift > 1000000) fail("a translation of \"" + found->second + "\"", at);
+                if (failed != std::errc() || shift < -1000000 || shift > 1000000)
+                    fail("a translation of \"" + found->second + "\"", at);
                 from = next;
             }
         }
@@ -325,7 +334,8 @@ private:
             int code = -1;
             std::from_chars(found->second.data(), found->second.data() + found->second.size(), code);
             const int first = code & 3, second = (code >> 2) & 3;
-            if (code < 0 || code > 127 || first > 2 || second > 2 || first == second) fail("a rotation of \"" + found->second + "\"", at);
+            if (code < 0 || code > 127 || first > 2 || second > 2 || first == second)
+                fail("a rotation of \"" + found->second + "\"", at);
             n.transform.axis = {first, second, 3 - first - second};
             for (std::size_t r = 0; r < 3; ++r) n.transform.sign[r] = (code >> (4 + r)) & 1 ? -1 : 1;
         }
@@ -352,10 +362,12 @@ private:
     // A node is met once, so that no file can make this run long, and cycles end.
     void place(std::int64_t id, const VoxTransform& outer, int depth) {
         const auto found = nodes_.find(id);
-        if (found == nodes_.end() || depth > 64 || !met_.insert(id).second) fail("the scene graph's node " + std::to_string(id) + " is missing, nested too deep or met twice", 8);
+        if (found == nodes_.end() || depth > 64 || !met_.insert(id).second)
+            fail("the scene graph's node " + std::to_string(id) + " is missing, nested too deep or met twice", 8);
         const VoxTransform here = outer.then(found->second.transform);
         for (std::int64_t model : found->second.models) {
-            if (model < 0 || static_cast<std::size_t>(model) >= models_.size()) fail("there is no model " + std::to_string(model), 8);
+            if (model < 0 || static_cast<std::size_t>(model) >= models_.size())
+                fail("there is no model " + std::to_string(model), 8);
             placed_.emplace_back(static_cast<std::size_t>(model), here);
         }
         for (std::int64_t child : found->second.children) place(child, here, depth + 1);

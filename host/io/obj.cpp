@@ -1,15 +1,19 @@
-// OBJ and MTL through tinyobjloader, by its callbacks: they hand over every face as it stands, with any number of corners, and leave the
-// stream where the line ends, which gives every message its line. Numbers are read again from that line, because tinyobjloader takes
-// "nan" and words for 0, drops what follows a number ("1.5x"), and lets indices past 32 bits wrap round.
+// OBJ and MTL through tinyobjloader, by its callbacks: they hand over every face as it stands, with any number of corners, and
+// leave the stream where the line ends, which gives every message its line. Numbers are read again from that line, because
+// tinyobjloader takes "nan" and words for 0, drops what follows a number ("1.5x"), and lets indices past 32 bits wrap round.
 //
 // A vertex is split where faces give it different normals or texture coordinates; the first pair met keeps its number, the others
 // follow the file's vertices, so that an OBJ without seams arrives as it is stored. (u, v) run up the picture; they are turned to
 // run down it, as in glTF.
 //
-// Materials. Kd, Ke and vertex colours are taken as linear, as the format knows no colour space; pictures of 8 bits are sRGB. Glass is
-// what has an illumination model with transparency (4, 6, 7, 9): it transmits 1 - d, or all where d is 1; its colour is Tf, where that is
-// not black, else Kd; it is a body where Ni is above 1, else thin. Other materials with d below 1 are blended. Tf is left alone outside
-// glass, since exporters write "Tf 1 1 1" for what is opaque. Roughness is Pr, else from the exponent Ns: sqrt(2 / (Ns + 2)).
+// Materials. Kd, Ke and vertex colours are taken as linear, as the format knows no colour space; pictures of 8 bits are sRGB.
+// Glass is what has an illumination model with transparency (4, 6, 7, 9): it transmits 1 - d, or all where d is 1; its colour is
+// Tf, where that is not black, else Kd; it is a body where Ni is above 1, else thin. Other materials with d below 1 are blended.
+// Tf is left alone outside glass, since exporters write "Tf 1 1 1" for what is opaque. Roughness is Pr, else from the exponent
+// Ns: sqrt(2 / (Ns + 2)).
+#include <tiny_obj_loader.h>
+#include <vitrail/io/image.h>
+
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -19,10 +23,6 @@
 #include <optional>
 #include <sstream>
 #include <streambuf>
-
-#include <tiny_obj_loader.h>
-
-#include <vitrail/io/image.h>
 
 #include "io/soup.h"
 
@@ -53,8 +53,8 @@ public:
 
     Scene read();
 
-    bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials, std::map<std::string, int>* ids, std::string*,
-                    std::string*) override;
+    bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials, std::map<std::string, int>* ids,
+                    std::string*, std::string*) override;
 
 private:
     // The line that tinyobjloader has just read, without its key word.
@@ -91,7 +91,7 @@ private:
     };
     std::vector<Later> later_;
 
-    std::vector<std::string> names_;            // of materials, in order of first use; "" for faces before the first usemtl
+    std::vector<std::string> names_;  // of materials, in order of first use; "" for faces before the first usemtl
     std::map<std::string, std::uint32_t, std::less<>> numberOf_;
     std::uint32_t current_ = 0;
     bool currentKnown_ = false;
@@ -136,8 +136,9 @@ std::size_t ObjSink::numbers(std::string_view rest, float* values, std::size_t l
         ++count;
     }
     if (count < least)
-        failAt(source_, place(), "a " + std::string(what) + " of " + std::to_string(count) + " numbers; at least " +
-                                     std::to_string(least) + " were expected");
+        failAt(source_, place(),
+               "a " + std::string(what) + " of " + std::to_string(count) + " numbers; at least " + std::to_string(least) +
+                   " were expected");
     return count;
 }
 
@@ -170,10 +171,12 @@ std::optional<std::int64_t> ObjSink::index(std::string_view text, std::size_t co
     if (text.empty()) return std::nullopt;
     std::int64_t value = 0;
     if (!parseInteger(text, value))
-        failAt(source_, place(), "a face names the " + std::string(what) + " " + inQuotes(text) + "; a whole number was expected");
+        failAt(source_, place(),
+               "a face names the " + std::string(what) + " " + inQuotes(text) + "; a whole number was expected");
     if (value == 0 || value < -static_cast<std::int64_t>(count) || value > std::numeric_limits<std::uint32_t>::max())
-        failAt(source_, place(), "a face names " + std::string(what) + " " + std::to_string(value) + "; there are " +
-                                     std::to_string(count) + " so far, numbered from 1, or back from -1",
+        failAt(source_, place(),
+               "a face names " + std::string(what) + " " + std::to_string(value) + "; there are " + std::to_string(count) +
+                   " so far, numbered from 1, or back from -1",
                "exporting the mesh again");
     return value > 0 ? value - 1 : static_cast<std::int64_t>(count) + value;
 }
@@ -268,8 +271,9 @@ Scene ObjSink::read() {
     const std::size_t counts[3] = {soup_.mesh.positions.size(), texcoords_.size(), normals_.size()};
     for (const Later& l : later_)
         if (l.index >= static_cast<std::int64_t>(counts[l.list]))
-            failAt(source_, place(l.offset), "a face names " + std::string(kWhat[l.list]) + " " + std::to_string(l.index + 1) + "; the file has " +
-                                                 std::to_string(counts[l.list]) + ", numbered from 1",
+            failAt(source_, place(l.offset),
+                   "a face names " + std::string(kWhat[l.list]) + " " + std::to_string(l.index + 1) + "; the file has " +
+                       std::to_string(counts[l.list]) + ", numbered from 1",
                    "exporting the mesh again");
     nameLines();
     splitVertices();
@@ -288,8 +292,8 @@ Scene ObjSink::read() {
     return scene;
 }
 
-// Vertices that are not finite were noted with the byte where their line ends. Counting lines takes time, so only the two that a message
-// may name get one: the first, and the first that a face uses.
+// Vertices that are not finite were noted with the byte where their line ends. Counting lines takes time, so only the two that a
+// message may name get one: the first, and the first that a face uses.
 void ObjSink::nameLines() {
     auto& bad = soup_.notFinite;
     if (bad.empty()) return;
@@ -298,7 +302,8 @@ void ObjSink::nameLines() {
     };
     name(bad[0].second);
     for (const Corner& c : corners_) {
-        const auto found = std::lower_bound(bad.begin(), bad.end(), c.position, [](const auto& b, std::uint32_t v) { return b.first < v; });
+        const auto found =
+            std::lower_bound(bad.begin(), bad.end(), c.position, [](const auto& b, std::uint32_t v) { return b.first < v; });
         if (found == bad.end() || found->first != c.position) continue;
         name(found->second);
         return;
@@ -334,7 +339,8 @@ void ObjSink::splitVertices() {
         if (!versions.empty()) {
             const std::int64_t t = c.texcoord, n = normals ? c.normal : -1;
             const auto same = [&](const Version& v) { return v.taken && v.texcoord == t && v.normal == n; };
-            while (!same(versions[vertex]) && versions[vertex].taken && versions[vertex].next != kNone) vertex = versions[vertex].next;
+            while (!same(versions[vertex]) && versions[vertex].taken && versions[vertex].next != kNone)
+                vertex = versions[vertex].next;
             if (!same(versions[vertex])) {
                 if (versions[vertex].taken) {
                     if (versions.size() >= kNone)

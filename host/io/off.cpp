@@ -1,8 +1,9 @@
 // OFF (Geomview), ascii and binary: OFF with the prefixes ST, C and N in any mix, with or without comments. 4OFF and nOFF, whose
 // vertices have another number of coordinates, are refused.
 //
-// Ascii vertices stand one a line: after x y z come the normal (N), the colour (C, or three or four more numbers under plain OFF) and
-// s t (ST). Whole-number colours are 0 to 255 and sRGB, those with a point or exponent 0 to 1 and linear. Face colours are not read.
+// Ascii vertices stand one a line: after x y z come the normal (N), the colour (C, or three or four more numbers under plain OFF)
+// and s t (ST). Whole-number colours are 0 to 255 and sRGB, those with a point or exponent 0 to 1 and linear. Face colours are
+// not read.
 //
 // Read here and not through OpenMesh 9: its reader answers "success" with 32669 faces from memory that was never set
 // for a file with a comment, with no vertex where the counts stand on the first line, and loops over a count of 353,535,235,358
@@ -55,8 +56,9 @@ void checkCounts(const Source& source, Place place, const Header& header, std::u
 
 void checkIndex(const Source& source, Place place, std::uint64_t face, std::int64_t index, std::uint64_t vertexCount) {
     if (index < 0 || static_cast<std::uint64_t>(index) >= vertexCount)
-        failAt(source, place, "face " + std::to_string(face) + " names vertex " + std::to_string(index) + "; there are " +
-                                  std::to_string(vertexCount) + ", numbered from 0");
+        failAt(source, place,
+               "face " + std::to_string(face) + " names vertex " + std::to_string(index) + "; there are " +
+                   std::to_string(vertexCount) + ", numbered from 0");
 }
 
 Float4 colourOf(const float* values, std::size_t count, bool whole) {
@@ -80,7 +82,8 @@ Soup readAscii(const Source& source, TextCursor cursor, const Header& header) {
         return value;
     };
     const auto cutOff = [&](const char* what, std::uint64_t i, std::uint64_t count) {
-        failAt(source, place(), "the file ends in " + std::string(what) + " " + std::to_string(i) + " of " + std::to_string(count),
+        failAt(source, place(),
+               "the file ends in " + std::string(what) + " " + std::to_string(i) + " of " + std::to_string(count),
                "fetching the file again: it is cut off");
     };
 
@@ -117,7 +120,8 @@ Soup readAscii(const Source& source, TextCursor cursor, const Header& header) {
     }
     if (!allColoured) {
         mesh.colours.clear();
-        if (header.colours) mesh.repairs.push_back("vertex colours were left out: not every vertex has three or four numbers of colour.");
+        if (header.colours)
+            mesh.repairs.push_back("vertex colours were left out: not every vertex has three or four numbers of colour.");
     }
 
     for (std::uint64_t f = 0; f < header.faces; ++f) {
@@ -128,8 +132,9 @@ Soup readAscii(const Source& source, TextCursor cursor, const Header& header) {
             failAt(source, start, inQuotes(word) + " where the corner count of face " + std::to_string(f) + " was expected");
         // A corner takes a digit and a space.
         if (static_cast<std::uint64_t>(count) > (cursor.left() + 1) / 2)
-            failAt(source, start, "face " + std::to_string(f) + " claims " + std::to_string(count) + " corners, with " +
-                                      std::to_string(cursor.left()) + " bytes left in the file");
+            failAt(source, start,
+                   "face " + std::to_string(f) + " claims " + std::to_string(count) + " corners, with " +
+                       std::to_string(cursor.left()) + " bytes left in the file");
         const std::size_t first = soup.corners.size();
         for (std::int64_t c = 0; c < count; ++c) {
             if (!cursor.word(word)) cutOff("face", f, header.faces);
@@ -152,7 +157,9 @@ public:
     template <class T>
     T take() {
         static_assert(sizeof(T) == 4);
-        if (left() < 4) failAt(source_, {Place::byte, source_.bytes.size()}, "the file ends too early", "fetching the file again: it is cut off");
+        if (left() < 4)
+            failAt(source_, {Place::byte, source_.bytes.size()}, "the file ends too early",
+                   "fetching the file again: it is cut off");
         std::array<std::byte, 4> raw;
         std::memcpy(raw.data(), source_.bytes.data() + at_, 4);
         if constexpr (std::endian::native == std::endian::little) std::reverse(raw.begin(), raw.end());
@@ -163,7 +170,8 @@ public:
         const Place here = place();
         const auto value = take<std::int32_t>();
         if (value < 0 || static_cast<std::uint64_t>(value) > left())
-            failAt(source_, here, std::to_string(value) + " " + what + " claimed, with " + std::to_string(left()) + " bytes left in the file");
+            failAt(source_, here,
+                   std::to_string(value) + " " + what + " claimed, with " + std::to_string(left()) + " bytes left in the file");
         return static_cast<std::uint64_t>(value);
     }
     std::uint64_t left() const { return source_.bytes.size() - at_; }
@@ -227,7 +235,8 @@ Scene readOff(const Source& source) {
         TextCursor ahead = cursor;
         if (ahead.wordOnLine(word) && word == "BINARY") {
             ahead.skipLine();
-            return sceneOf(finish(readBinary(source, ahead.offset(), {header.texcoords, header.colours, header.normals, true, 0, 0}), source));
+            return sceneOf(finish(
+                readBinary(source, ahead.offset(), {header.texcoords, header.colours, header.normals, true, 0, 0}), source));
         }
         if (!cursor.word(word)) failAt(source, {}, "the file ends before its counts", "fetching the file again: it is cut off");
     } else if (!parseInteger(word, unused)) {  // the format lets the word OFF be left out
@@ -237,8 +246,9 @@ Scene readOff(const Source& source) {
     for (std::uint64_t* count : {&header.vertices, &header.faces}) {
         std::int64_t value = 0;
         if (!parseInteger(word, value) || value < 0)
-            failAt(source, {Place::line, cursor.line()},
-                   inQuotes(word) + " where the count of " + (count == &header.vertices ? "vertices" : "faces") + " was expected");
+            failAt(
+                source, {Place::line, cursor.line()},
+                inQuotes(word) + " where the count of " + (count == &header.vertices ? "vertices" : "faces") + " was expected");
         *count = static_cast<std::uint64_t>(value);
         if (count == &header.vertices && !cursor.word(word)) failAt(source, place, "the file ends before its count of faces");
     }

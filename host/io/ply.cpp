@@ -1,9 +1,10 @@
 // PLY, ascii and binary of both byte orders, with faces or with triangle strips (`tristrips`, -1 ends a strip).
 //
 // Read here and not through OpenMesh 9: its reader answers "success" with no face for tristrips (igea.ply), with a
-// triangle of vertices that do not exist for faces before vertices, with garbage after any list that it does not know and with zeros
-// after "nan"; it refuses uint list counts in ascii, goes on for ever in a header that breaks off, prints to stderr, and keeps its state in a
-// singleton that two threads would share. The tests hold both readers against each other where OpenMesh can read the file.
+// triangle of vertices that do not exist for faces before vertices, with garbage after any list that it does not know and with
+// zeros after "nan"; it refuses uint list counts in ascii, goes on for ever in a header that breaks off, prints to stderr, and
+// keeps its state in a singleton that two threads would share. The tests hold both readers against each other where OpenMesh can
+// read the file.
 //
 // Colours of integer type are sRGB and become linear, floating ones are linear. (s, t) run up the picture; they are turned to run
 // down it, as in glTF.
@@ -51,9 +52,9 @@ struct Header {
 
 bool parseType(std::string_view word, Type& type) {
     static constexpr std::pair<std::string_view, Type> kNames[] = {
-        {"char", Type::int8},    {"int8", Type::int8},     {"uchar", Type::uint8},    {"uint8", Type::uint8},
-        {"short", Type::int16},  {"int16", Type::int16},   {"ushort", Type::uint16},  {"uint16", Type::uint16},
-        {"int", Type::int32},    {"int32", Type::int32},   {"uint", Type::uint32},    {"uint32", Type::uint32},
+        {"char", Type::int8},     {"int8", Type::int8},       {"uchar", Type::uint8},    {"uint8", Type::uint8},
+        {"short", Type::int16},   {"int16", Type::int16},     {"ushort", Type::uint16},  {"uint16", Type::uint16},
+        {"int", Type::int32},     {"int32", Type::int32},     {"uint", Type::uint32},    {"uint32", Type::uint32},
         {"float", Type::float32}, {"float32", Type::float32}, {"double", Type::float64}, {"float64", Type::float64}};
     for (const auto& [name, value] : kNames) {
         if (name != word) continue;
@@ -69,7 +70,8 @@ Header readHeader(const Source& source) {
         failAt(source, {Place::line, line}, what, remedy);
     };
     if (text.empty()) failAt(source, {}, "the file is empty; a PLY header was expected");
-    if (text.substr(0, 3) != "ply" || (text.size() > 3 && text[3] != '\n' && text[3] != '\r' && text[3] != ' ' && text[3] != '\t'))
+    if (text.substr(0, 3) != "ply" ||
+        (text.size() > 3 && text[3] != '\n' && text[3] != '\r' && text[3] != ' ' && text[3] != '\t'))
         fail(1, "no PLY file: its first line is " + inQuotes(text.substr(0, text.find_first_of("\r\n"))) + ", not \"ply\"");
 
     // A header whose lines end with \r alone ends so too: a \n that follows it is data already.
@@ -121,7 +123,8 @@ Header readHeader(const Source& source) {
             element.name = word;
             element.count = static_cast<std::uint64_t>(count);
             element.line = line;
-            if (header.elements.size() == kMaxElements) fail(line, "more than " + std::to_string(kMaxElements) + " elements in a PLY header");
+            if (header.elements.size() == kMaxElements)
+                fail(line, "more than " + std::to_string(kMaxElements) + " elements in a PLY header");
             header.elements.push_back(std::move(element));
         } else if (key == "property") {
             if (header.elements.empty()) fail(line, "a property before the first element");
@@ -130,7 +133,8 @@ Header readHeader(const Source& source) {
             if (complete && word == "list") {
                 property.list = true;
                 complete = words.wordOnLine(word);
-                if (complete && !parseType(word, property.countType)) fail(line, "unknown type " + inQuotes(word) + " of a list's count");
+                if (complete && !parseType(word, property.countType))
+                    fail(line, "unknown type " + inQuotes(word) + " of a list's count");
                 if (complete && isFloat(property.countType)) fail(line, "the count of a list has the type " + inQuotes(word));
                 complete = complete && words.wordOnLine(word);
             }
@@ -141,7 +145,8 @@ Header readHeader(const Source& source) {
             if (!complete) fail(line, "\"property TYPE NAME\" or \"property list TYPE TYPE NAME\" was expected");
             property.name = word;
             std::vector<Property>& properties = header.elements.back().properties;
-            if (properties.size() == kMaxProperties) fail(line, "more than " + std::to_string(kMaxProperties) + " properties in one element");
+            if (properties.size() == kMaxProperties)
+                fail(line, "more than " + std::to_string(kMaxProperties) + " properties in one element");
             properties.push_back(std::move(property));
         } else {
             fail(line, "unknown word " + inQuotes(key) + " in a PLY header");
@@ -162,8 +167,8 @@ void checkCounts(const Source& source, const Header& header) {
         const std::uint64_t spare = header.format == Format::ascii ? 1 : 0;  // the last line needs no end
         if (element.count > (left + spare) / least)
             failAt(source, {Place::line, element.line},
-                   std::to_string(element.count) + " " + inQuotes(element.name) + " elements claimed, at least " + std::to_string(least) +
-                       " bytes each, but only " + std::to_string(left) + " bytes follow",
+                   std::to_string(element.count) + " " + inQuotes(element.name) + " elements claimed, at least " +
+                       std::to_string(least) + " bytes each, but only " + std::to_string(left) + " bytes follow",
                    "fetching the file again: it is cut off or its header is wrong");
         left -= std::min(left, element.count * least);
     }
@@ -202,8 +207,9 @@ public:
         const std::int64_t count = integer(type);
         // A value takes a character and a space.
         if (count < 0 || static_cast<std::uint64_t>(count) > (cursor_.left() + 1) / 2)
-            failAt(source_, place(), "a list of " + std::to_string(count) + " values, with " + std::to_string(cursor_.left()) +
-                                         " bytes left in the file");
+            failAt(source_, place(),
+                   "a list of " + std::to_string(count) + " values, with " + std::to_string(cursor_.left()) +
+                       " bytes left in the file");
         return static_cast<std::uint64_t>(count);
     }
     void skip(Type) { word(); }
@@ -219,12 +225,14 @@ private:
         failAt(source_, place(), "too few values on the line for " + inQuotes(element_->name) + " " + std::to_string(instance_));
     }
     [[noreturn]] void notANumber(std::string_view text) {
-        failAt(source_, place(), inQuotes(text) + " where a number of " + inQuotes(element_->name) + " " + std::to_string(instance_) +
-                                     " was expected");
+        failAt(source_, place(),
+               inQuotes(text) + " where a number of " + inQuotes(element_->name) + " " + std::to_string(instance_) +
+                   " was expected");
     }
     [[noreturn]] void cutOff() {
         failAt(source_, place(),
-               "the file ends in " + inQuotes(element_->name) + " " + std::to_string(instance_) + " of " + std::to_string(element_->count),
+               "the file ends in " + inQuotes(element_->name) + " " + std::to_string(instance_) + " of " +
+                   std::to_string(element_->count),
                "fetching the file again: it is cut off");
     }
 
@@ -238,7 +246,9 @@ private:
 class BinaryInput {
 public:
     BinaryInput(const Source& source, const Header& header)
-        : source_(source), at_(header.dataOffset), swap_((header.format == Format::little) != (std::endian::native == std::endian::little)) {}
+        : source_(source),
+          at_(header.dataOffset),
+          swap_((header.format == Format::little) != (std::endian::native == std::endian::little)) {}
 
     void start(const Element& element, std::uint64_t i) {
         element_ = &element;
@@ -249,21 +259,32 @@ public:
 
     float real(Type type) {
         switch (type) {
-            case Type::float32: return take<float>();
-            case Type::float64: return static_cast<float>(take<double>());
-            default: return static_cast<float>(integer(type));
+            case Type::float32:
+                return take<float>();
+            case Type::float64:
+                return static_cast<float>(take<double>());
+            default:
+                return static_cast<float>(integer(type));
         }
     }
     std::int64_t integer(Type type) {
         switch (type) {
-            case Type::int8: return take<std::int8_t>();
-            case Type::uint8: return take<std::uint8_t>();
-            case Type::int16: return take<std::int16_t>();
-            case Type::uint16: return take<std::uint16_t>();
-            case Type::int32: return take<std::int32_t>();
-            case Type::uint32: return take<std::uint32_t>();
-            case Type::float32: return whole(take<float>());
-            case Type::float64: return whole(take<double>());
+            case Type::int8:
+                return take<std::int8_t>();
+            case Type::uint8:
+                return take<std::uint8_t>();
+            case Type::int16:
+                return take<std::int16_t>();
+            case Type::uint16:
+                return take<std::uint16_t>();
+            case Type::int32:
+                return take<std::int32_t>();
+            case Type::uint32:
+                return take<std::uint32_t>();
+            case Type::float32:
+                return whole(take<float>());
+            case Type::float64:
+                return whole(take<double>());
         }
         return 0;
     }
@@ -272,8 +293,9 @@ public:
         const std::uint64_t left = source_.bytes.size() - at_;
         if (count < 0 || static_cast<std::uint64_t>(count) > left / kBytes[static_cast<int>(valueType)])
             failAt(source_, place(),
-                   "a list of " + std::to_string(count) + " values in " + inQuotes(element_->name) + " " + std::to_string(instance_) +
-                       " of " + std::to_string(element_->count) + ", with " + std::to_string(left) + " bytes left in the file",
+                   "a list of " + std::to_string(count) + " values in " + inQuotes(element_->name) + " " +
+                       std::to_string(instance_) + " of " + std::to_string(element_->count) + ", with " + std::to_string(left) +
+                       " bytes left in the file",
                    "fetching the file again: it is cut off or damaged");
         return static_cast<std::uint64_t>(count);
     }
@@ -296,12 +318,14 @@ private:
     }
     std::int64_t whole(double value) {
         if (!(value == std::floor(value)) || std::abs(value) > 9e15)
-            failAt(source_, place(), "an index of " + inQuotes(element_->name) + " " + std::to_string(instance_) + " is no whole number");
+            failAt(source_, place(),
+                   "an index of " + inQuotes(element_->name) + " " + std::to_string(instance_) + " is no whole number");
         return static_cast<std::int64_t>(value);
     }
     [[noreturn]] void cutOff() {
         failAt(source_, {Place::byte, source_.bytes.size()},
-               "the file ends in " + inQuotes(element_->name) + " " + std::to_string(instance_) + " of " + std::to_string(element_->count),
+               "the file ends in " + inQuotes(element_->name) + " " + std::to_string(instance_) + " of " +
+                   std::to_string(element_->count),
                "fetching the file again: it is cut off");
     }
 
@@ -316,10 +340,26 @@ private:
 enum Role { kX, kY, kZ, kNormalX, kNormalY, kNormalZ, kS, kT, kRed, kGreen, kBlue, kAlpha, kRoles, kNone = -1 };
 
 int roleOf(const std::string& name) {
-    static constexpr std::pair<std::string_view, Role> kNames[] = {
-        {"x", kX}, {"y", kY}, {"z", kZ}, {"nx", kNormalX}, {"ny", kNormalY}, {"nz", kNormalZ}, {"s", kS}, {"t", kT}, {"u", kS}, {"v", kT},
-        {"texture_u", kS}, {"texture_v", kT}, {"red", kRed}, {"green", kGreen}, {"blue", kBlue}, {"alpha", kAlpha},
-        {"diffuse_red", kRed}, {"diffuse_green", kGreen}, {"diffuse_blue", kBlue}, {"diffuse_alpha", kAlpha}};
+    static constexpr std::pair<std::string_view, Role> kNames[] = {{"x", kX},
+                                                                   {"y", kY},
+                                                                   {"z", kZ},
+                                                                   {"nx", kNormalX},
+                                                                   {"ny", kNormalY},
+                                                                   {"nz", kNormalZ},
+                                                                   {"s", kS},
+                                                                   {"t", kT},
+                                                                   {"u", kS},
+                                                                   {"v", kT},
+                                                                   {"texture_u", kS},
+                                                                   {"texture_v", kT},
+                                                                   {"red", kRed},
+                                                                   {"green", kGreen},
+                                                                   {"blue", kBlue},
+                                                                   {"alpha", kAlpha},
+                                                                   {"diffuse_red", kRed},
+                                                                   {"diffuse_green", kGreen},
+                                                                   {"diffuse_blue", kBlue},
+                                                                   {"diffuse_alpha", kAlpha}};
     for (const auto& [known, role] : kNames)
         if (known == name) return role;
     return kNone;
@@ -374,8 +414,9 @@ void readVertices(Input& input, const Element& element, const Source& source, So
         if (normals) soup.mesh.normals.emplace_back(v[kNormalX], v[kNormalY], v[kNormalZ]);
         if (texcoords) soup.mesh.texcoords.emplace_back(v[kS], 1.0f - v[kT]);
         if (colours)
-            soup.mesh.colours.emplace_back(colourChannel(v[kRed], types[kRed], false), colourChannel(v[kGreen], types[kGreen], false),
-                                           colourChannel(v[kBlue], types[kBlue], false), colourChannel(v[kAlpha], types[kAlpha], true));
+            soup.mesh.colours.emplace_back(
+                colourChannel(v[kRed], types[kRed], false), colourChannel(v[kGreen], types[kGreen], false),
+                colourChannel(v[kBlue], types[kBlue], false), colourChannel(v[kAlpha], types[kAlpha], true));
     }
 }
 
@@ -424,8 +465,9 @@ void readFaces(Input& input, const Element& element, std::uint64_t vertexCount, 
                     continue;
                 }
                 if (index < 0 || static_cast<std::uint64_t>(index) >= vertexCount)
-                    failAt(source, input.place(), inQuotes(element.name) + " " + std::to_string(i) + " names vertex " + std::to_string(index) +
-                                                      "; there are " + std::to_string(vertexCount) + ", numbered from 0");
+                    failAt(source, input.place(),
+                           inQuotes(element.name) + " " + std::to_string(i) + " names vertex " + std::to_string(index) +
+                               "; there are " + std::to_string(vertexCount) + ", numbered from 0");
                 (strips ? strip : soup.corners).push_back(static_cast<std::uint32_t>(index));
             }
             if (strips)
@@ -460,7 +502,8 @@ Soup readElements(Input input, const Header& header, const Source& source) {
         } else if (!element.properties.empty()) {
             for (std::uint64_t i = 0; i < element.count; ++i) {
                 input.start(element, i);
-                for (const Property& p : element.properties) input.skip(p.type, p.list ? input.listCount(p.countType, p.type) : 1);
+                for (const Property& p : element.properties)
+                    input.skip(p.type, p.list ? input.listCount(p.countType, p.type) : 1);
             }
         }
     }

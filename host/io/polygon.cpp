@@ -13,12 +13,10 @@ struct Point {
 };
 
 // Twice the signed area of a, b, c.
-double turn(const Point& a, const Point& b, const Point& c) {
-    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-}
+double turn(const Point& a, const Point& b, const Point& c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
 
-// The corners in the plane they face: the axis along which Newell's normal is longest is dropped, and the rest ordered so that the
-// polygon runs counter-clockwise. Dropping an axis keeps the coordinates as they are in the file. False: no area.
+// The corners in the plane they face: the axis along which Newell's normal is longest is dropped, and the rest ordered so that
+// the polygon runs counter-clockwise. Dropping an axis keeps the coordinates as they are in the file. False: no area.
 bool flatten(std::span<const Float3> corners, std::vector<Point>& points) {
     Double3 normal(0.0);
     // Sums start from the first corner, so that a small polygon far from the origin keeps its digits.
@@ -37,8 +35,8 @@ bool flatten(std::span<const Float3> corners, std::vector<Point>& points) {
     return true;
 }
 
-// Every corner turns left and every triangle of the fan from corner 0 is wound like the polygon: a star, which turns left too, fails
-// the second.
+// Every corner turns left and every triangle of the fan from corner 0 is wound like the polygon: a star, which turns left too,
+// fails the second.
 bool convex(const std::vector<Point>& p) {
     const std::size_t n = p.size();
     for (std::size_t i = 0; i < n; ++i)
@@ -51,8 +49,13 @@ bool convex(const std::vector<Point>& p) {
 class EarClipper {
 public:
     EarClipper(const std::vector<Point>& points, std::vector<std::uint32_t>& triangles)
-        : p_(points), triangles_(triangles), next_(points.size()), previous_(points.size()), left_(points.size()),
-          listed_(points.size()), budget_(kTestsPerCorner * points.size()) {
+        : p_(points),
+          triangles_(triangles),
+          next_(points.size()),
+          previous_(points.size()),
+          left_(points.size()),
+          listed_(points.size()),
+          budget_(kTestsPerCorner * points.size()) {
         const auto n = static_cast<std::uint32_t>(points.size());
         for (std::uint32_t i = 0; i < n; ++i) {
             next_[i] = i + 1 == n ? 0 : i + 1;

@@ -37,7 +37,8 @@ public:
         expectPictureSize(w, h, text_.size(), name_);
         at_ = lineEnd_;
         // A row takes one pixel at least, in any form.
-        if (static_cast<std::size_t>(outer.length) > (text_.size() - at_) / 4) fail("too few bytes for its " + std::to_string(outer.length) + " rows");
+        if (static_cast<std::size_t>(outer.length) > (text_.size() - at_) / 4)
+            fail("too few bytes for its " + std::to_string(outer.length) + " rows");
 
         Picture picture(static_cast<std::uint32_t>(w), static_cast<std::uint32_t>(h));
         std::vector<Rgbe> row(static_cast<std::size_t>(inner.length));

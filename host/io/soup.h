@@ -1,11 +1,11 @@
 // io/soup.h: what a reader collects, polygons as the file has them, and the one way from there to a checked Mesh.
 #pragma once
+#include <vitrail/scene/mesh.h>
+
 #include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
-
-#include <vitrail/scene/mesh.h>
 
 #include "io/text.h"
 
@@ -20,7 +20,7 @@ struct Soup {
 
     /// Polygons of fewer than three corners, which are left out.
     std::uint64_t tooSmall = 0;
-    std::uint64_t polygonsSeen = 0;        ///< `sizes` and the ones left out
+    std::uint64_t polygonsSeen = 0;  ///< `sizes` and the ones left out
     Place firstTooSmall;
 
     /// Vertices that are not finite, in rising order, and where they stand. They matter only where a polygon uses them.
@@ -32,9 +32,9 @@ struct Soup {
     void closePolygon(std::size_t first, Place place);
 };
 
-/// Triangulates, leaves out vertices that are not finite and that nothing uses, drops normals and texture coordinates that are not
-/// finite, and writes a sentence into `repairs` for each such thing. Throws Error (badFile) for a mesh without triangles or one that uses
-/// a vertex that is not finite.
+/// Triangulates, leaves out vertices that are not finite and that nothing uses, drops normals and texture coordinates that are
+/// not finite, and writes a sentence into `repairs` for each such thing. Throws Error (badFile) for a mesh without triangles or
+/// one that uses a vertex that is not finite.
 Mesh finish(Soup&& soup, const Source& source);
 
 }  // namespace vitrail::io_detail

@@ -1,5 +1,5 @@
-// STL, binary and ascii. The format has no shared vertices: those at bit-equal positions become one, in the order of first use. Facet
-// normals and attribute bytes are not read; winding alone says which side is out.
+// STL, binary and ascii. The format has no shared vertices: those at bit-equal positions become one, in the order of first use.
+// Facet normals and attribute bytes are not read; winding alone says which side is out.
 //
 // Read here and not through OpenMesh 9: its reader leaves out triangles of equal vertices without a word, takes a
 // word that is no number as 0, and makes a whole triangle of a file that ends in the middle of one.
@@ -55,22 +55,26 @@ std::uint64_t claimedFacets(const Source& source) {
     return source.bytes.size() < kHeaderBytes ? 0 : littleEndian<std::uint32_t>(source.bytes.data() + 80);
 }
 
-// "solid" opens ascii files and the headers of many binary ones. A size that fits the count settles it; else bytes that no text has do.
+// "solid" opens ascii files and the headers of many binary ones. A size that fits the count settles it; else bytes that no text
+// has do.
 bool isBinary(const Source& source) {
     const std::string_view text = textOf(source);
     if (text.size() >= kHeaderBytes && text.size() == kHeaderBytes + kFacetBytes * claimedFacets(source)) return true;
     std::string_view word;
     if (!TextCursor(text).word(word) || lower(word) != "solid") return true;
-    return std::any_of(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(text.size(), 1024)), [](char c) {
-        const auto byte = static_cast<unsigned char>(c);
-        return byte < 0x20 && !(byte >= '\t' && byte <= '\r');
-    });
+    return std::any_of(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(text.size(), 1024)),
+                       [](char c) {
+                           const auto byte = static_cast<unsigned char>(c);
+                           return byte < 0x20 && !(byte >= '\t' && byte <= '\r');
+                       });
 }
 
 Soup readBinary(const Source& source) {
     const std::size_t size = source.bytes.size();
     if (size < kHeaderBytes)
-        failAt(source, {}, "neither ascii STL (no \"solid\" at its start) nor binary STL (" + std::to_string(size) + " bytes; its header alone takes 84)");
+        failAt(source, {},
+               "neither ascii STL (no \"solid\" at its start) nor binary STL (" + std::to_string(size) +
+                   " bytes; its header alone takes 84)");
     const std::uint64_t facets = claimedFacets(source), held = (size - kHeaderBytes) / kFacetBytes;
     if (facets > held)
         failAt(source, {Place::byte, 80},
@@ -103,7 +107,8 @@ Soup readAscii(const Source& source) {
     // The next word must be one of those that may follow; returns it in lower case.
     const auto next = [&](const std::string& expected) {
         if (!cursor.word(word))
-            failAt(source, place(), "the file ends where " + expected + " was expected", "fetching the file again: it is cut off");
+            failAt(source, place(), "the file ends where " + expected + " was expected",
+                   "fetching the file again: it is cut off");
         return lower(word);
     };
     const auto unexpected = [&](const std::string& expected) {
@@ -158,7 +163,9 @@ Soup readAscii(const Source& source) {
             unexpected("\"facet\" or \"endsolid\"");
         }
     }
-    if (inside) soup.mesh.repairs.push_back("the file ends without \"endsolid\": triangles after that point, if there were any, are missing.");
+    if (inside)
+        soup.mesh.repairs.push_back(
+            "the file ends without \"endsolid\": triangles after that point, if there were any, are missing.");
     return soup;
 }
 

@@ -127,8 +127,6 @@ std::string_view trimmed(std::string_view text) {
     return text;
 }
 
-float linearFromSrgb(float value) {
-    return value <= 0.04045f ? value / 12.92f : std::pow((value + 0.055f) / 1.055f, 2.4f);
-}
+float linearFromSrgb(float value) { return value <= 0.04045f ? value / 12.92f : std::pow((value + 0.055f) / 1.055f, 2.4f); }
 
 }  // namespace vitrail::io_detail

@@ -1,11 +1,12 @@
-// io/text.h: what the readers of text formats share: a cursor that knows its line, and numbers read whole, the same under any locale.
+// io/text.h: what the readers of text formats share: a cursor that knows its line, and numbers read whole, the same under any
+// locale.
 #pragma once
+#include <vitrail/core/error.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
-
-#include <vitrail/core/error.h>
 
 #include "io/readers.h"
 
@@ -53,8 +54,8 @@ private:
     std::uint64_t line_;
 };
 
-/// The whole of `text` as a number, correctly rounded; "nan", "inf" and Microsoft's "1.#IND" give what is not finite, a number too
-/// large for a float infinity. False where it is no number.
+/// The whole of `text` as a number, correctly rounded; "nan", "inf" and Microsoft's "1.#IND" give what is not finite, a number
+/// too large for a float infinity. False where it is no number.
 bool parseNumber(std::string_view text, float& value);
 bool parseNumber(std::string_view text, double& value);
 /// The whole of `text` as an integer. False where it is none or does not fit 64 bits.

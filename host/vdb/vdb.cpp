@@ -25,7 +25,8 @@ namespace {
 }
 
 void expectBox(const Grid& grid, const std::filesystem::path& file) {
-    if (!grid.isBox()) fail("a camera's grid has no place in OpenVDB's world", file, "a box grid, or .npy", ErrorCode::unsupported);
+    if (!grid.isBox())
+        fail("a camera's grid has no place in OpenVDB's world", file, "a box grid, or .npy", ErrorCode::unsupported);
 }
 
 // The index of a cell in the file, whose axes may be turned.
@@ -57,7 +58,8 @@ bool visitActiveOfAnyType(const openvdb::GridBase& base, F&& f) {
 
 VoxelBits place(const openvdb::GridBase& from, const std::filesystem::path& file, const Grid& grid) {
     const openvdb::math::Transform& transform = from.transform();
-    if (!transform.isLinear()) fail("its first grid has no linear transform", file, "a grid of cubic voxels", ErrorCode::badInput);
+    if (!transform.isLinear())
+        fail("its first grid has no linear transform", file, "a grid of cubic voxels", ErrorCode::badInput);
     // Cell of index (0,0,0), and the steps along the index axes, in voxels of `grid`.
     const auto cellOf = [&](const openvdb::Vec3d& index) {
         const openvdb::Vec3d world = transform.indexToWorld(index);
@@ -83,7 +85,8 @@ VoxelBits place(const openvdb::GridBase& from, const std::filesystem::path& file
         fail("its voxels lie far from the grid", file, "a grid around the file's voxels", ErrorCode::badInput);
     }
     // Index i is a cell's centre; rounding in the transform must not move it over the cell's face.
-    const std::int64_t shift[3] = {static_cast<std::int64_t>(std::floor(base.x + 1e-4)), static_cast<std::int64_t>(std::floor(base.y + 1e-4)),
+    const std::int64_t shift[3] = {static_cast<std::int64_t>(std::floor(base.x + 1e-4)),
+                                   static_cast<std::int64_t>(std::floor(base.y + 1e-4)),
                                    static_cast<std::int64_t>(std::floor(base.z + 1e-4))};
     VoxelBits voxels(grid);
     const Uint3 size = grid.size();
@@ -93,7 +96,8 @@ VoxelBits place(const openvdb::GridBase& from, const std::filesystem::path& file
             low[a] = box.min()[a] + shift[a];
             high[a] = box.max()[a] + shift[a];
             if (low[a] < 0 || high[a] >= static_cast<std::int64_t>(size[a])) {
-                fail("active voxels lie outside the grid of " + grid.text(), file, "a grid around all of them", ErrorCode::badInput);
+                fail("active voxels lie outside the grid of " + grid.text(), file, "a grid around all of them",
+                     ErrorCode::badInput);
             }
         }
         for (std::int64_t z = low[2]; z <= high[2]; ++z) {

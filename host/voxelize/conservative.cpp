@@ -6,14 +6,14 @@ namespace vitrail {
 inline namespace v0 {
 
 Voxels voxelize(Queue& queue, const MeshInput& mesh, const Grid& grid, const Conservative& method) {
-    return detail::runVoxelizer(queue, mesh, grid, method.channels,
-                                {Conservative::name.data(), detail::checkOptions(method), true,
-                                 [](detail::Pass& pass) { detail::launchBits(pass, "conservative"); },
-                                 [](detail::Pass& pass) { detail::launchChannels(pass, "conservative"); }});
+    return detail::runVoxelizer(queue, mesh, grid, method.channels, Conservative::name.data(), detail::checkOptions(method),
+                                [&](detail::Pass& pass, const detail::MarkChannels* channels) {
+                                    detail::launchMark(pass, "conservative", channels);
+                                });
 }
 
 std::uint64_t estimate(const MeshInput& mesh, const Grid& grid, const Conservative& method) {
-    return detail::estimateVoxelizer(mesh, grid, method.channels, true);
+    return detail::estimateVoxelizer(mesh, grid, method.channels);
 }
 
 }  // namespace v0

@@ -27,21 +27,13 @@ void checkOption(const Method& row, std::string_view option, double value) {
     throw Error(ErrorCode::badOption, {std::string(row.name) + " has no option \"" + std::string(option) + "\"", "", "", "`vitrail info --methods`"});
 }
 
-void forTriangles(Pass& pass, const char* step, const std::function<void(std::uint32_t, std::uint32_t)>& launch) {
+void forTriangles(Pass& pass, const char* step, bool second, const std::function<void(std::uint32_t, std::uint32_t)>& launch) {
     constexpr std::uint32_t kBatch = 1u << 20;  // long work can be interrupted between batches
     const std::uint32_t count = pass.mesh.triangleCount();
     for (std::uint32_t first = 0; first < count; first += std::min(kBatch, count - first)) {
-        pass.call.step(step, (pass.sums != nullptr ? 0.5 : 0.0) + 0.5 * first / count);
+        pass.call.step(step, (second ? 0.5 : 0.0) + 0.5 * first / count);
         launch(first, std::min(kBatch, count - first));
     }
-}
-
-PassNames passNames(const char* method, const char* pass) {
-    PassNames names;
-    names.kernel.append(method).append("_").append(pass);
-    names.tasks.append(names.kernel).append("_tasks");
-    names.step.append(method).append(": ").append(pass);
-    return names;
 }
 
 namespace {
@@ -52,8 +44,8 @@ std::uint64_t meshBytes(const MeshView& mesh, bool materials) {
 
 }  // namespace
 
-std::uint64_t estimateVoxelizer(const MeshInput& mesh, const Grid& grid, Channel channels, bool tasks) {
-    std::uint64_t bytes = grid.wordCount() * 4 + kStatusWords * 4 + (tasks ? kTaskCapacity * sizeof(Task) : 0);
+std::uint64_t estimateVoxelizer(const MeshInput& mesh, const Grid& grid, Channel channels) {
+    std::uint64_t bytes = grid.wordCount() * 4 + kStatusWords * 4 + kTaskCapacity * sizeof(Task);
     if (mesh.device() == nullptr) bytes += meshBytes(mesh.view(), has(channels, Channel::material) && !mesh.view().materials.empty());
     if (channels != Channel::none) {
         // A surface occupies about twice a face of the grid for a compact body; four faces leave room for most scenes.
@@ -64,14 +56,15 @@ std::uint64_t estimateVoxelizer(const MeshInput& mesh, const Grid& grid, Channel
     return bytes;
 }
 
-Voxels runVoxelizer(Queue& queue, const MeshInput& input, const Grid& grid, Channel channels, const VoxelizerPasses& passes) {
-    if (input.triangleCount() == 0) throw Error(ErrorCode::badInput, {std::string(passes.name) + ": the mesh has no triangles", "", "", "a mesh with faces"});
-    const Method& row = *findMethod(passes.name);
+Voxels runVoxelizer(Queue& queue, const MeshInput& input, const Grid& grid, Channel channels, const char* name,
+                    const std::string& options, const std::function<void(Pass&, const MarkChannels*)>& mark) {
+    if (input.triangleCount() == 0) throw Error(ErrorCode::badInput, {std::string(name) + ": the mesh has no triangles", "", "", "a mesh with faces"});
+    const Method& row = *findMethod(name);
     if (!grid.isBox() && (!row.cameraGrids && grid.desc().kind != VITRAIL_GRID_ORTHOGRAPHIC))
-        throw Error(ErrorCode::unsupported, {std::string(passes.name) + " works on box and orthographic grids; this one is perspective", "", "",
+        throw Error(ErrorCode::unsupported, {std::string(name) + " works on box and orthographic grids; this one is perspective", "", "",
                                              "sampled or points"});
     // Refused as a whole, before anything is taken.
-    const std::uint64_t need = estimateVoxelizer(input, grid, Channel::none, passes.tasks);
+    const std::uint64_t need = estimateVoxelizer(input, grid, Channel::none);
     const DeviceInfo device = queue.deviceInfo();
     const std::uint64_t limit = queue.memoryLimit();
     if (grid.wordCount() * 4 > device.maxBufferBytes || need > limit) {
@@ -79,7 +72,7 @@ Voxels runVoxelizer(Queue& queue, const MeshInput& input, const Grid& grid, Chan
         const double room = buffer ? double(device.maxBufferBytes) / double(grid.wordCount() * 4) : double(limit) / double(need);
         const Uint3 size = grid.size();
         throw Error(ErrorCode::outOfMemory,
-                    {std::string(passes.name) + ": a grid of " + grid.text() + " needs " + bytesText(buffer ? grid.wordCount() * 4 : need) +
+                    {std::string(name) + ": a grid of " + grid.text() + " needs " + bytesText(buffer ? grid.wordCount() * 4 : need) +
                          (buffer ? " of bits; this device allows " + bytesText(device.maxBufferBytes) + " in one buffer"
                                  : "; the memory limit is " + bytesText(limit)),
                      "device: " + device.name + " (" + device.platform + ")",
@@ -89,7 +82,7 @@ Voxels runVoxelizer(Queue& queue, const MeshInput& input, const Grid& grid, Chan
     }
 
     Call call(queue, std::string("voxelizing ") + std::to_string(input.triangleCount()) + " triangles");
-    call.step(passes.name, 0.0);
+    call.step(name, 0.0);
     std::optional<DeviceMesh> uploaded;
     if (input.device() == nullptr) {
         MeshView view = input.view();
@@ -103,25 +96,24 @@ Voxels runVoxelizer(Queue& queue, const MeshInput& input, const Grid& grid, Chan
     Workspace& workspace = queue.workspace();
     auto out = std::make_unique<VoxelsState>(queue.state(), grid);
     out->channels = channels;
-    out->method = passes.name;
-    out->options = passes.options;
+    out->method = name;
+    out->options = options;
     out->triangles = mesh.triangleCount();
     out->record = call.record();
     out->bits = workspace.take<std::uint32_t>(grid.wordCount(), "bits of a grid of " + grid.text());
     out->status = workspace.take<std::uint32_t>(kStatusWords, "counts");
-    Buffer<Task> tasks;
-    if (passes.tasks) tasks = workspace.take<Task>(kTaskCapacity, "task list");
+    Buffer<Task> tasks = workspace.take<Task>(kTaskCapacity, "task list");
     call.fill(out->bits, 0);
     call.fill(out->status, 0);
 
     const Program program{"voxelize", realOptions(queue)};
-    Pass pass{call, mesh, program, *out, tasks, nullptr};
-    passes.bits(pass);
+    Pass pass{call, mesh, program, *out, tasks};
+    mark(pass, nullptr);
     if (channels != Channel::none) {
         makeRank(*out);
         ChannelSums sums = beginChannels(call, *out);
-        pass.sums = &sums;
-        passes.channels(pass);
+        const MarkChannels to{.counts = &out->counts, .normalSums = &sums.normalSums, .materials = &out->materials};
+        mark(pass, &to);
         endChannels(call, *out, sums);
     }
     return Voxels(std::move(out));

@@ -39,71 +39,63 @@ struct Task {
     std::uint32_t triangle, block;
 };
 
-/// What a voxelizer's two passes get.
+/// What a voxelizer's passes work on.
 struct Pass {
     Call& call;
     const DeviceMesh& mesh;
     const Program& program;
     VoxelsState& out;
-    Buffer<Task>& tasks;            // empty where the method makes none
-    ChannelSums* sums;              // null in the first pass
+    Buffer<Task>& tasks;
 };
 
-struct VoxelizerPasses {
-    const char* name;
-    std::string options;
-    bool tasks;
-    std::function<void(Pass&)> bits;      // ORs into out.bits
-    std::function<void(Pass&)> channels;  // adds to out.counts, sums->normalSums, out.materials
+/// Where fragments are added; null: not asked for.
+struct MarkChannels {
+    const Buffer<std::uint32_t>* counts = nullptr;
+    const Buffer<std::int64_t>* normalSums = nullptr;
+    const Buffer<std::uint32_t>* materials = nullptr;
+    const Buffer<std::uint32_t>*list = nullptr, *cursor = nullptr;  // triangles of each voxel, and where its next one goes
 };
 
-Voxels runVoxelizer(Queue& queue, const MeshInput& mesh, const Grid& grid, Channel channels, const VoxelizerPasses& passes);
+/// Checks, uploads, takes memory, and calls `mark(pass, null)` for the bits and, with channels, `mark(pass, channels)`.
+Voxels runVoxelizer(Queue& queue, const MeshInput& mesh, const Grid& grid, Channel channels, const char* name, const std::string& options,
+                    const std::function<void(Pass&, const MarkChannels*)>& mark);
 
-/// Bytes of runVoxelizer: upload, bits, task list, and with channels a rank and up to `occupied` entries.
-std::uint64_t estimateVoxelizer(const MeshInput& mesh, const Grid& grid, Channel channels, bool tasks);
+/// Bytes of runVoxelizer: upload, bits, task list, and with channels a rank and one entry each for the voxels of eight faces of the grid.
+std::uint64_t estimateVoxelizer(const MeshInput& mesh, const Grid& grid, Channel channels);
 
 /// Calls launch(first, count) for the triangles in batches, with a step of progress before each.
-void forTriangles(Pass& pass, const char* step, const std::function<void(std::uint32_t first, std::uint32_t count)>& launch);
+void forTriangles(Pass& pass, const char* step, bool second, const std::function<void(std::uint32_t first, std::uint32_t count)>& launch);
 
-/// Names of a pass's two kernels and of its step of progress.
-struct PassNames {
-    std::string kernel, tasks, step;
-};
-PassNames passNames(const char* method, const char* pass);
-
-/// Launches <method>_bits and <method>_bits_tasks, whose first argument is the grid, then `options`, then the mesh.
+/// Launches <method>_mark over the triangles and then over the tasks they left: sets bits where `channels` is null, else adds to them. Its
+/// first argument is the grid, then `options`, then kernels/lib/mark.cl.
 template <class... Options>
-void launchBits(Pass& pass, const char* method, const Options&... options) {
+void launchMark(Pass& pass, const char* method, const MarkChannels* channels, const Options&... options) {
+    const MarkChannels none{};
+    const MarkChannels& to = channels != nullptr ? *channels : none;
     const DeviceMesh& mesh = pass.mesh;
     const vitrail_GridDesc desc = pass.out.grid.desc();
-    const PassNames names = passNames(method, "bits");
-    forTriangles(pass, names.step.c_str(), [&](std::uint32_t first, std::uint32_t count) {
-        pass.call.launchRange(pass.program, names.kernel.c_str(), count, desc, options..., mesh.positions(), mesh.indices(), mesh.vertexCount(),
-                              first, pass.out.bits, pass.tasks, kTaskCapacity, pass.out.status);
+    const std::string kernel = std::string(method) + "_mark", step = std::string(method) + (channels != nullptr ? ": channels" : ": bits");
+    Buffer<std::uint32_t> scratch;
+    if (channels != nullptr) {  // what the first pass counted stays
+        scratch = pass.call.queue().workspace().take<std::uint32_t>(kStatusWords, "counts");
+        pass.call.fill(scratch, 0);
+    }
+    const Buffer<std::uint32_t>& status = channels != nullptr ? scratch : pass.out.status;
+    const Buffer<std::uint32_t> empty;
+    const Buffer<std::int64_t> emptySums;
+    const auto launch = [&](std::uint32_t first, std::uint32_t groups, const auto& run) {
+        run(kernel.c_str(), desc, options..., mesh.positions(), mesh.indices(), mesh.vertexCount(), mesh.materials(), pass.out.bits,
+            channels != nullptr ? pass.out.rank : empty, to.counts ? *to.counts : empty, to.normalSums ? *to.normalSums : emptySums,
+            to.materials ? *to.materials : empty, to.list ? *to.list : empty, to.cursor ? *to.cursor : empty, pass.tasks, kTaskCapacity, status,
+            first, groups);
+    };
+    forTriangles(pass, step.c_str(), channels != nullptr, [&](std::uint32_t first, std::uint32_t count) {
+        launch(first, 0u, [&](const char* name, const auto&... args) { pass.call.launchRange(pass.program, name, count, args...); });
     });
     const std::uint32_t groups = pass.call.taskGroups();
-    pass.call.launch(pass.program, names.tasks.c_str(), groups, 1, desc, options..., mesh.positions(), mesh.indices(), mesh.vertexCount(),
-                     pass.out.bits, pass.tasks, kTaskCapacity, pass.out.status, groups);
-}
-
-/// Launches <method>_channels and <method>_channels_tasks likewise.
-template <class... Options>
-void launchChannels(Pass& pass, const char* method, const Options&... options) {
-    const DeviceMesh& mesh = pass.mesh;
-    VoxelsState& out = pass.out;
-    const vitrail_GridDesc desc = out.grid.desc();
-    const PassNames names = passNames(method, "channels");
-    Buffer<std::uint32_t> status = pass.call.queue().workspace().take<std::uint32_t>(kStatusWords, "counts");
-    pass.call.fill(status, 0);
-    forTriangles(pass, names.step.c_str(), [&](std::uint32_t first, std::uint32_t count) {
-        pass.call.launchRange(pass.program, names.kernel.c_str(), count, desc, options..., mesh.positions(), mesh.indices(), mesh.vertexCount(),
-                              first, out.bits, out.rank, out.counts, pass.sums->normalSums, out.materials, mesh.materials(), pass.tasks,
-                              kTaskCapacity, status);
+    launch(0u, groups, [&](const char* name, const auto&... args) {
+        pass.call.launch(pass.program, name, groups, 1, args..., static_cast<std::uint64_t>(groups), 1u);
     });
-    const std::uint32_t groups = pass.call.taskGroups();
-    pass.call.launch(pass.program, names.tasks.c_str(), groups, 1, desc, options..., mesh.positions(), mesh.indices(), mesh.vertexCount(),
-                     out.bits, out.rank, out.counts, pass.sums->normalSums, out.materials, mesh.materials(), pass.tasks, kTaskCapacity, status,
-                     groups);
 }
 
 }  // namespace detail

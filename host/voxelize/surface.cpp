@@ -22,19 +22,14 @@ SurfaceVoxels voxelizeSurface(Queue& queue, const DeviceMesh& mesh, const Grid& 
         throw Error(ErrorCode::unsupported, {"a grid of " + grid.text() + " has " + std::to_string(fragments) + " fragments; lists hold 32 bits", "", "",
                                              "a coarser grid"});
     Buffer<std::uint32_t> list = workspace.take<std::uint32_t>(fragments, "triangle lists");
-    Buffer<std::uint32_t> status = workspace.take<std::uint32_t>(detail::kStatusWords, "counts");
     Buffer<detail::Task> tasks = workspace.take<detail::Task>(detail::kTaskCapacity, "task list");
-    call.fill(status, 0);
     const detail::Program program{"voxelize", detail::realOptions(queue)};
-    const vitrail_GridDesc desc = grid.desc();
-    call.launchRange(program, "surface_lists", mesh.triangleCount(), desc, mesh.positions(), mesh.indices(), mesh.vertexCount(), bits, rank,
-                     list, cursor, tasks, detail::kTaskCapacity, status);
-    const std::uint32_t groups = call.taskGroups();
-    call.launch(program, "surface_lists_tasks", groups, 1, desc, mesh.positions(), mesh.indices(), mesh.vertexCount(), bits, rank, list, cursor,
-                tasks, detail::kTaskCapacity, status, groups);
+    detail::Pass pass{call, mesh, program, out.voxels.state(), tasks};
+    const detail::MarkChannels to{.list = &list, .cursor = &cursor};
+    detail::launchMark(pass, "conservative", &to);
     call.step("surface: gather", 0.75);
     out.surface = workspace.take<vitrail_SurfaceVoxel>(occupied, "surface records");
-    call.launchRange(program, "surface_gather", rank.size(), desc, mesh.positions(), mesh.indices(), mesh.vertexCount(), mesh.normals(), bits,
+    call.launchRange(program, "surface_gather", rank.size(), grid.desc(), mesh.positions(), mesh.indices(), mesh.vertexCount(), mesh.normals(), bits,
                      rank, counts, list, cursor, out.surface);
     return out;
 }

@@ -1,8 +1,10 @@
 // voxelize/voxelize.cpp: a method by its name, see vitrail/voxelize/voxelize.h.
 #include <vitrail/voxelize/voxelize.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstddef>
+#include <cstdio>
 #include <utility>
 
 #include <vitrail/core/error.h>

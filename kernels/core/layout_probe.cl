@@ -1,20 +1,62 @@
-// core/layout_probe.cl: the sizes and member offsets of every shared struct as the device's compiler lays them out.
+// core/layout_probe.cl: the sizes and member offsets of every shared struct as the device's compiler lays them out, in the order in which
+// tests/core/layout_test.cpp lists them.
+#include "layout/camera.h"
 #include "layout/grid.h"
+#include "layout/shading.h"
+#include "layout/surface_voxel.h"
 #pragma OPENCL FP_CONTRACT OFF
 
-#define OFFSET(type, member) (uint)(size_t)(&((global type*)0)->member)
+#define SIZE(type) out[n++] = (uint)sizeof(type)
+#define OFFSET(type, member) out[n++] = (uint)(size_t)(&((global type*)0)->member)
 
 kernel void layout_probe(global uint* out) {
-    out[0] = sizeof(vitrail_float4);
-    out[1] = sizeof(vitrail_uint4);
-    out[2] = sizeof(vitrail_GridDesc);
-    out[3] = OFFSET(vitrail_GridDesc, origin);
-    out[4] = OFFSET(vitrail_GridDesc, axisX);
-    out[5] = OFFSET(vitrail_GridDesc, axisY);
-    out[6] = OFFSET(vitrail_GridDesc, axisZ);
-    out[7] = OFFSET(vitrail_GridDesc, extent);
-    out[8] = OFFSET(vitrail_GridDesc, size);
-    out[9] = OFFSET(vitrail_GridDesc, kind);
-    out[10] = OFFSET(vitrail_GridDesc, tilesX);
-    out[11] = OFFSET(vitrail_GridDesc, tilesY);
+    uint n = 0u;
+    SIZE(vitrail_float4);
+    SIZE(vitrail_uint4);
+
+    SIZE(vitrail_GridDesc);
+    OFFSET(vitrail_GridDesc, origin);
+    OFFSET(vitrail_GridDesc, axisX);
+    OFFSET(vitrail_GridDesc, axisY);
+    OFFSET(vitrail_GridDesc, axisZ);
+    OFFSET(vitrail_GridDesc, extent);
+    OFFSET(vitrail_GridDesc, size);
+    OFFSET(vitrail_GridDesc, kind);
+    OFFSET(vitrail_GridDesc, tilesX);
+    OFFSET(vitrail_GridDesc, tilesY);
+    OFFSET(vitrail_GridDesc, padding);
+
+    SIZE(vitrail_CameraDesc);
+    OFFSET(vitrail_CameraDesc, eye);
+    OFFSET(vitrail_CameraDesc, right);
+    OFFSET(vitrail_CameraDesc, up);
+    OFFSET(vitrail_CameraDesc, forward);
+    OFFSET(vitrail_CameraDesc, width);
+    OFFSET(vitrail_CameraDesc, height);
+    OFFSET(vitrail_CameraDesc, padding0);
+    OFFSET(vitrail_CameraDesc, padding1);
+
+    SIZE(vitrail_MaterialDesc);
+    OFFSET(vitrail_MaterialDesc, colour);
+    OFFSET(vitrail_MaterialDesc, absorption);
+
+    SIZE(vitrail_LightDesc);
+    OFFSET(vitrail_LightDesc, toLight);
+    OFFSET(vitrail_LightDesc, irradiance);
+    OFFSET(vitrail_LightDesc, ambient);
+    OFFSET(vitrail_LightDesc, zenith);
+    OFFSET(vitrail_LightDesc, horizon);
+    OFFSET(vitrail_LightDesc, nadir);
+    OFFSET(vitrail_LightDesc, ground);
+    OFFSET(vitrail_LightDesc, groundLight);
+    OFFSET(vitrail_LightDesc, mapWidth);
+    OFFSET(vitrail_LightDesc, mapHeight);
+    OFFSET(vitrail_LightDesc, padding0);
+    OFFSET(vitrail_LightDesc, padding1);
+
+    SIZE(vitrail_SurfaceVoxel);
+    OFFSET(vitrail_SurfaceVoxel, normal);
+    OFFSET(vitrail_SurfaceVoxel, centroid);
+    OFFSET(vitrail_SurfaceVoxel, gradient0);
+    OFFSET(vitrail_SurfaceVoxel, gradient1);
 }

@@ -3,7 +3,7 @@
 //
 // Coordinates are local to the low cell of the triangle's box, so that small triangles keep their digits. Every bound moves outward by
 // what its rounding may have lost, so that a cell touched is never left out: with vertices off by at most `delta` (two roundings of
-// coordinates up to N) an edge function a x + b y + c is off by at most (|a| + |b|) 8 delta + 2 delta (extents), the plane likewise.
+// coordinates up to N, or beyond the grid) an edge function a x + b y + c is off by at most (|a| + |b|) 8 delta + 2 delta (extents), the plane likewise.
 #ifndef VITRAIL_LIB_COLUMN_RUN
 #define VITRAIL_LIB_COLUMN_RUN
 #include "lib/triangle.cl"
@@ -28,6 +28,7 @@ typedef struct {
 typedef struct {
     int xFirst, xLast, yFirst, yLast, zFirst, zLast;  // the triangle's box in cells of the grid
     bool exact;      // every cell of the box is touched
+    int wide;        // axes along which the triangle is not within one cell of the grid
     Bounds3 xOfY;    // from the xy projection: x for a row y
     Bounds3 zOfY;    // from the yz projection
     Bounds3 zOfX;    // from the zx projection
@@ -69,8 +70,9 @@ static inline void run_projection(Bounds3* bounds, real v0, real u0, real v1, re
 }
 
 // Cells along one axis that [least, most] meets; geometry exactly on the upper face belongs to the last. False when none.
-static inline bool run_extent(real least, real most, uint size, real delta, int* first, int* last) {
+static inline bool run_extent(real least, real most, uint size, real delta, int* first, int* last, int* wide) {
     if (!(most >= REAL(0)) || !(least <= REAL(size))) return false;
+    *wide += floor(least - delta) != floor(most + delta) || most > REAL(size);
     *first = (int)fmax(floor(least - delta), REAL(0));
     *last = (int)fmin(floor(most + delta), REAL(size - 1u));
     *first = min(*first, (int)size - 1);
@@ -80,20 +82,25 @@ static inline bool run_extent(real least, real most, uint size, real delta, int*
 // The triangle's box of cells. False when it lies outside the grid.
 static inline bool run_box(const vitrail_GridDesc* grid, const Triangle* t, real delta, Runs* runs) {
     const real slack = RUN_BOX_SLACK * delta;
+    runs->wide = 0;
     return run_extent(fmin(t->a.x, fmin(t->b.x, t->c.x)), fmax(t->a.x, fmax(t->b.x, t->c.x)), grid->size.x, slack, &runs->xFirst,
-                      &runs->xLast) &&
+                      &runs->xLast, &runs->wide) &&
            run_extent(fmin(t->a.y, fmin(t->b.y, t->c.y)), fmax(t->a.y, fmax(t->b.y, t->c.y)), grid->size.y, slack, &runs->yFirst,
-                      &runs->yLast) &&
+                      &runs->yLast, &runs->wide) &&
            run_extent(fmin(t->a.z, fmin(t->b.z, t->c.z)), fmax(t->a.z, fmax(t->b.z, t->c.z)), grid->size.z, slack, &runs->zFirst,
-                      &runs->zLast);
+                      &runs->zLast, &runs->wide);
 }
 
-static inline real run_delta(const vitrail_GridDesc* grid) { return REAL(max(grid->size.x, max(grid->size.y, grid->size.z))) * REAL_EPSILON; }
+// By how much the coordinates of the vertices may be off.
+static inline real run_delta(const vitrail_GridDesc* grid, const Triangle* t) {
+    const real a = fmax(fabs(t->a.x), fmax(fabs(t->a.y), fabs(t->a.z))), b = fmax(fabs(t->b.x), fmax(fabs(t->b.y), fabs(t->b.z))),
+               c = fmax(fabs(t->c.x), fmax(fabs(t->c.y), fabs(t->c.z)));
+    return fmax(REAL(max(grid->size.x, max(grid->size.y, grid->size.z))), fmax(a, fmax(b, c))) * REAL_EPSILON;
+}
 
 static inline void run_bounds(const Triangle* t, real delta, Runs* runs) {
     // A connected set whose box is one cell wide along two axes meets every cell along the third.
-    const int wide = (runs->xFirst != runs->xLast) + (runs->yFirst != runs->yLast) + (runs->zFirst != runs->zLast);
-    runs->exact = wide <= 1;
+    runs->exact = runs->wide <= 1;
     if (runs->exact) return;
     const real ox = REAL(runs->xFirst), oy = REAL(runs->yFirst), oz = REAL(runs->zFirst);
     const real ax = t->a.x - ox, ay = t->a.y - oy, az = t->a.z - oz;

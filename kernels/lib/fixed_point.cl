@@ -10,11 +10,11 @@ static inline void fixed_add(global long* sum, long value) { atom_add(sum, value
 #else
 // The same sum from two 32-bit atomics: the low half returns what it held, which tells whether this addition carried.
 static inline void fixed_add(global long* sum, long value) {
-    global uint* half = (global uint*)sum;  // little-endian, as every OpenCL device in use is
+    global uint* halves = (global uint*)sum;  // little-endian, as every OpenCL device in use is
     const uint low = (uint)value, high = (uint)(value >> 32);
-    const uint before = atomic_add(half, low);
+    const uint before = atomic_add(halves, low);
     const uint carry = (before + low < before) ? 1u : 0u;
-    if (high + carry != 0u) atomic_add(half + 1, high + carry);
+    if (high + carry != 0u) atomic_add(halves + 1, high + carry);
 }
 #endif
 

@@ -1,4 +1,4 @@
-// lib/tasks.cl: a big triangle leaves blocks of its work as tasks (triangle, block) for a second kernel, so that no work-group waits for
+// lib/tasks.cl: a big triangle leaves blocks of its work as tasks (triangle, block) for a second launch, so that no work-group waits for
 // it. The list is of fixed length (host/voxelize/prepare.h); what a triangle marks does not depend on whether it got a place.
 #ifndef VITRAIL_LIB_TASKS
 #define VITRAIL_LIB_TASKS

@@ -1,8 +1,6 @@
 // voxelize/conservative.cl: every cell that a triangle touches (vitrail/voxelize/conservative.h).
-#include "lib/channels.cl"
 #include "lib/column_run.cl"
-#include "lib/range.cl"
-#include "lib/tasks.cl"
+#include "lib/mark.cl"
 #pragma OPENCL FP_CONTRACT OFF
 
 // Calls for every run of touched cells in columns [xLeast, xMost] x [yLeast, yMost]: ORs its bits, or adds to the channels.
@@ -52,7 +50,7 @@ static inline void conservative_triangle(const vitrail_GridDesc* grid, global co
     }
     const Triangle t = {triangle_vertex(grid, positions, corner[0]), triangle_vertex(grid, positions, corner[1]),
                         triangle_vertex(grid, positions, corner[2])};
-    const real delta = run_delta(grid);
+    const real delta = run_delta(grid, &t);
     Runs runs;
     if (!run_box(grid, &t, delta, &runs)) {
         if (counting) atomic_inc(status + STATUS_OUTSIDE);
@@ -72,45 +70,8 @@ static inline void conservative_triangle(const vitrail_GridDesc* grid, global co
     conservative_columns(grid, &runs, xLeast, xMost, yLeast, yMost, bits, channels, normal, material, triangle);
 }
 
-kernel void conservative_bits(const vitrail_GridDesc grid, global const float* positions, global const uint* indices, uint vertexCount,
-                              uint first, global uint* bits, global uint2* tasks, uint taskCapacity, global uint* status, ulong count,
-                              uint perItem) {
-    FOR_RANGE(i, count, perItem)
-        conservative_triangle(&grid, positions, indices, vertexCount, first + (uint)i, -1, bits, 0, 0, tasks, taskCapacity, status);
-}
-
-// Blocks of big triangles, shared out over `groups` work-items of local size 1.
-kernel void conservative_bits_tasks(const vitrail_GridDesc grid, global const float* positions, global const uint* indices,
-                                    uint vertexCount, global uint* bits, global uint2* tasks, uint taskCapacity, global uint* status,
-                                    uint groups) {
-    const uint count = tasks_count(status, taskCapacity);
-    for (uint i = (uint)get_global_id(0); i < count; i += groups) {
-        const uint2 task = tasks[i];
-        if (task.x != TASKS_NONE)
-            conservative_triangle(&grid, positions, indices, vertexCount, task.x, (int)task.y, bits, 0, 0, tasks, 0, status);
-    }
-}
-
-kernel void conservative_channels(const vitrail_GridDesc grid, global const float* positions, global const uint* indices,
-                                  uint vertexCount, uint first, global const uint* bits, global const uint* rank,
-                                  global uint* counts, global long* normalSums, global uint* materialIds,
-                                  global const uint* materials, global uint2* tasks, uint taskCapacity, global uint* status,
-                                  ulong count, uint perItem) {
-    const Channels channels = {bits, rank, counts, normalSums, materialIds, 0, 0};
-    FOR_RANGE(i, count, perItem)
-        conservative_triangle(&grid, positions, indices, vertexCount, first + (uint)i, -1, 0, &channels, materials, tasks, taskCapacity,
-                              status);
-}
-
-kernel void conservative_channels_tasks(const vitrail_GridDesc grid, global const float* positions, global const uint* indices,
-                                        uint vertexCount, global const uint* bits, global const uint* rank, global uint* counts,
-                                        global long* normalSums, global uint* materialIds, global const uint* materials,
-                                        global uint2* tasks, uint taskCapacity, global uint* status, uint groups) {
-    const uint count = tasks_count(status, taskCapacity);
-    const Channels channels = {bits, rank, counts, normalSums, materialIds, 0, 0};
-    for (uint i = (uint)get_global_id(0); i < count; i += groups) {
-        const uint2 task = tasks[i];
-        if (task.x != TASKS_NONE)
-            conservative_triangle(&grid, positions, indices, vertexCount, task.x, (int)task.y, 0, &channels, materials, tasks, 0, status);
-    }
+kernel void conservative_mark(const vitrail_GridDesc grid, MARK_PARAMETERS) {
+    const Channels channels = MARK_CHANNELS;
+    MARK_EACH(triangle, block, conservative_triangle(&grid, positions, indices, vertexCount, triangle, block, bits, rank ? &channels : 0,
+                                            materials, tasks, taskCapacity, status))
 }

@@ -14,9 +14,7 @@
 //
 // A factor above MAX_FACTOR splits the triangle at its edge midpoints, as often as it takes (the passes of section 4.2), leaving out what lies
 // outside the grid.
-#include "lib/channels.cl"
-#include "lib/range.cl"
-#include "lib/tasks.cl"
+#include "lib/mark.cl"
 #pragma OPENCL FP_CONTRACT OFF
 
 #define MAX_FACTOR REAL(64)
@@ -30,32 +28,31 @@ typedef struct {
     const Channels* channels;
     long normal[3];
     uint material;
-    size_t word;
-    uint mask, bit, times;    // times 0: nothing is waiting
+    uint x, y, z;             // the last point's cell
+    uint mask, times;         // bits of its word that wait, and points; times 0: nothing does
 } Scatter;
 
 static inline void points_flush(Scatter* s) {
     if (s->times == 0u) return;
+    const size_t word = bits_word(s->grid, s->x, s->y, s->z);
     if (s->bits)
-        atomic_or(s->bits + s->word, s->mask);
+        atomic_or(s->bits + word, s->mask);
     else
-        channels_add_times(s->channels, s->word, s->bit, s->normal, s->material, s->times);
+        channels_add_times(s->channels, word, s->z & 31u, s->normal, s->material, s->times);
     s->times = 0u;
 }
 
 static inline void points_put(Scatter* s, uint x, uint y, uint z, uint times) {
-    const size_t word = bits_word(s->grid, x, y, z);
-    const uint bit = z & 31u;
-    if (s->times != 0u && s->word == word && (s->bits || s->bit == bit)) {
-        s->mask |= 1u << bit;
-        s->times += times;
-        return;
+    const uint apart = s->bits ? (s->z ^ z) >> 5 : s->z ^ z;
+    if (s->times == 0u || s->x != x || s->y != y || apart != 0u) {
+        points_flush(s);
+        s->mask = 0u;
+        s->x = x;
+        s->y = y;
     }
-    points_flush(s);
-    s->word = word;
-    s->mask = 1u << bit;
-    s->bit = bit;
-    s->times = times;
+    s->z = z;
+    s->mask |= 1u << (z & 31u);
+    s->times += times;
 }
 
 // A corner or point in the space in which the triangle is tessellated: voxel coordinates, or for a perspective grid what is right, up and
@@ -164,6 +161,14 @@ static inline void points_stitch(Scatter* s, Point p, Point q, Point r, int n, i
     }
 }
 
+// The centroid of the triangle, which is that of the micro-triangle in its middle.
+static inline void points_middle(Scatter* s, const Point c[3]) {
+    const real third = REAL(1) / REAL(3);
+    const Point u = {c[1].x - c[0].x, c[1].y - c[0].y, c[1].z - c[0].z}, v = {c[2].x - c[0].x, c[2].y - c[0].y, c[2].z - c[0].z};
+    const Point base = {c[0].x + third * v.x, c[0].y + third * v.y, c[0].z + third * v.z};
+    points_emit(s, base, u, third);
+}
+
 // How many micro-triangles the factors make.
 static inline uint points_count(int n, const int t[3]) {
     if (n == 1) return 1u;
@@ -176,12 +181,7 @@ static inline void points_tessellate(Scatter* s, const Point c[3], int n, const 
         for (int k = 0; n - 2 * k >= 2; ++k)
             for (int e = 0; e < 3; ++e)
                 points_stitch(s, c[e], c[e == 2 ? 0 : e + 1], c[e == 0 ? 2 : e - 1], n, k, k == 0 ? t[e] : n - 2 * k);
-    if ((n & 1) != 0) {
-        const real third = REAL(1) / REAL(3);
-        const Point u = {c[1].x - c[0].x, c[1].y - c[0].y, c[1].z - c[0].z}, v = {c[2].x - c[0].x, c[2].y - c[0].y, c[2].z - c[0].z};
-        const Point base = {c[0].x + third * v.x, c[0].y + third * v.y, c[0].z + third * v.z};
-        points_emit(s, base, u, third);
-    }
+    if ((n & 1) != 0) points_middle(s, c);
 }
 
 // Corners of the part that `path` leads to: two bits a halving, the first one highest.
@@ -246,8 +246,14 @@ static inline void points_triangle(const vitrail_GridDesc* grid, float safetyFac
     s.normal[0] = s.normal[1] = s.normal[2] = 0;
     s.material = 0u;
     s.times = 0u;
+    s.x = s.y = s.z = s.mask = 0u;
     if (channels && channels->normalSum) channels_normal(triangle_normal(positions, corner), s.normal);
     if (channels && channels->material && materials) s.material = materials[triangle];
+    if (most <= REAL(1)) {  // most triangles of a fine mesh: one point
+        points_middle(&s, root);
+        points_flush(&s);
+        return;
+    }
 
     // Parts in the order of their paths, none larger than a task's; one that is outside or fine enough is done with as a whole.
     const ulong whole = 1ul << (2 * MAX_SPLITS), share = whole >> (2 * taskSplits);
@@ -291,44 +297,8 @@ static inline void points_triangle(const vitrail_GridDesc* grid, float safetyFac
     points_flush(&s);
 }
 
-kernel void points_bits(const vitrail_GridDesc grid, float safetyFactor, global const float* positions, global const uint* indices,
-                        uint vertexCount, uint first, global uint* bits, global uint2* tasks, uint taskCapacity, global uint* status,
-                        ulong count, uint perItem) {
-    FOR_RANGE(i, count, perItem)
-        points_triangle(&grid, safetyFactor, positions, indices, vertexCount, first + (uint)i, -1, bits, 0, 0, tasks, taskCapacity, status);
-}
-
-// Parts of big triangles, shared out over `groups` work-items of local size 1.
-kernel void points_bits_tasks(const vitrail_GridDesc grid, float safetyFactor, global const float* positions, global const uint* indices,
-                              uint vertexCount, global uint* bits, global uint2* tasks, uint taskCapacity, global uint* status,
-                              uint groups) {
-    const uint count = tasks_count(status, taskCapacity);
-    for (uint i = (uint)get_global_id(0); i < count; i += groups) {
-        const uint2 task = tasks[i];
-        if (task.x != TASKS_NONE)
-            points_triangle(&grid, safetyFactor, positions, indices, vertexCount, task.x, (int)task.y, bits, 0, 0, tasks, 0, status);
-    }
-}
-
-kernel void points_channels(const vitrail_GridDesc grid, float safetyFactor, global const float* positions, global const uint* indices,
-                            uint vertexCount, uint first, global const uint* bits, global const uint* rank, global uint* counts,
-                            global long* normalSums, global uint* materialIds, global const uint* materials, global uint2* tasks,
-                            uint taskCapacity, global uint* status, ulong count, uint perItem) {
-    const Channels channels = {bits, rank, counts, normalSums, materialIds, 0, 0};
-    FOR_RANGE(i, count, perItem)
-        points_triangle(&grid, safetyFactor, positions, indices, vertexCount, first + (uint)i, -1, 0, &channels, materials, tasks, taskCapacity,
-                        status);
-}
-
-kernel void points_channels_tasks(const vitrail_GridDesc grid, float safetyFactor, global const float* positions,
-                                  global const uint* indices, uint vertexCount, global const uint* bits, global const uint* rank,
-                                  global uint* counts, global long* normalSums, global uint* materialIds, global const uint* materials,
-                                  global uint2* tasks, uint taskCapacity, global uint* status, uint groups) {
-    const uint count = tasks_count(status, taskCapacity);
-    const Channels channels = {bits, rank, counts, normalSums, materialIds, 0, 0};
-    for (uint i = (uint)get_global_id(0); i < count; i += groups) {
-        const uint2 task = tasks[i];
-        if (task.x != TASKS_NONE)
-            points_triangle(&grid, safetyFactor, positions, indices, vertexCount, task.x, (int)task.y, 0, &channels, materials, tasks, 0, status);
-    }
+kernel void points_mark(const vitrail_GridDesc grid, float safetyFactor, MARK_PARAMETERS) {
+    const Channels channels = MARK_CHANNELS;
+    MARK_EACH(triangle, block, points_triangle(&grid, safetyFactor, positions, indices, vertexCount, triangle, block, bits, rank ? &channels : 0,
+                                            materials, tasks, taskCapacity, status))
 }

@@ -4,9 +4,7 @@
 // Within a row, "edge e crosses the line of column i" is a comparison of two products that rounding leaves monotonic in i, as every
 // step towards them is (an addition or a product with a factor of known sign). So each of the two edges that cross a row has one column
 // from which on it no longer does, and the columns between the two are those that the triangle meets, to the bit.
-#include "lib/channels.cl"
-#include "lib/range.cl"
-#include "lib/tasks.cl"
+#include "lib/mark.cl"
 #pragma OPENCL FP_CONTRACT OFF
 
 // A corner: the line of a column is x = cx w, y = cy w; z is the slice coordinate. w is not looked at unless the grid is perspective.
@@ -215,41 +213,8 @@ static inline void sampled_triangle(const vitrail_GridDesc* grid, global const f
     sampled_rows(grid, &s, xLeast, xMost, yLeast, yMost, bits, channels, normal, material, triangle);
 }
 
-kernel void sampled_bits(const vitrail_GridDesc grid, global const float* positions, global const uint* indices, uint vertexCount, uint first,
-                         global uint* bits, global uint2* tasks, uint taskCapacity, global uint* status, ulong count, uint perItem) {
-    FOR_RANGE(i, count, perItem)
-        sampled_triangle(&grid, positions, indices, vertexCount, first + (uint)i, -1, bits, 0, 0, tasks, taskCapacity, status);
-}
-
-// Blocks of big triangles, shared out over `groups` work-items of local size 1.
-kernel void sampled_bits_tasks(const vitrail_GridDesc grid, global const float* positions, global const uint* indices, uint vertexCount,
-                               global uint* bits, global uint2* tasks, uint taskCapacity, global uint* status, uint groups) {
-    const uint count = tasks_count(status, taskCapacity);
-    for (uint i = (uint)get_global_id(0); i < count; i += groups) {
-        const uint2 task = tasks[i];
-        if (task.x != TASKS_NONE)
-            sampled_triangle(&grid, positions, indices, vertexCount, task.x, (int)task.y, bits, 0, 0, tasks, 0, status);
-    }
-}
-
-kernel void sampled_channels(const vitrail_GridDesc grid, global const float* positions, global const uint* indices, uint vertexCount,
-                             uint first, global const uint* bits, global const uint* rank, global uint* counts, global long* normalSums,
-                             global uint* materialIds, global const uint* materials, global uint2* tasks, uint taskCapacity,
-                             global uint* status, ulong count, uint perItem) {
-    const Channels channels = {bits, rank, counts, normalSums, materialIds, 0, 0};
-    FOR_RANGE(i, count, perItem)
-        sampled_triangle(&grid, positions, indices, vertexCount, first + (uint)i, -1, 0, &channels, materials, tasks, taskCapacity, status);
-}
-
-kernel void sampled_channels_tasks(const vitrail_GridDesc grid, global const float* positions, global const uint* indices,
-                                   uint vertexCount, global const uint* bits, global const uint* rank, global uint* counts,
-                                   global long* normalSums, global uint* materialIds, global const uint* materials, global uint2* tasks,
-                                   uint taskCapacity, global uint* status, uint groups) {
-    const uint count = tasks_count(status, taskCapacity);
-    const Channels channels = {bits, rank, counts, normalSums, materialIds, 0, 0};
-    for (uint i = (uint)get_global_id(0); i < count; i += groups) {
-        const uint2 task = tasks[i];
-        if (task.x != TASKS_NONE)
-            sampled_triangle(&grid, positions, indices, vertexCount, task.x, (int)task.y, 0, &channels, materials, tasks, 0, status);
-    }
+kernel void sampled_mark(const vitrail_GridDesc grid, MARK_PARAMETERS) {
+    const Channels channels = MARK_CHANNELS;
+    MARK_EACH(triangle, block, sampled_triangle(&grid, positions, indices, vertexCount, triangle, block, bits, rank ? &channels : 0,
+                                            materials, tasks, taskCapacity, status))
 }

@@ -1,30 +1,11 @@
-// voxelize/surface.cl: lists of the triangles of each conservative voxel, and the surface record that they add up to
-// (vitrail/layout/surface_voxel.h). Gathering needs no atomics; sums in fixed point make the order of a list not matter.
+// voxelize/surface.cl: the surface record that the triangles of a conservative voxel add up to (vitrail/layout/surface_voxel.h), from the
+// lists that conservative_mark left. Gathering needs no atomics; sums in fixed point make the order of a list not matter.
 #include "layout/surface_voxel.h"
 #include "lib/clip.cl"
 #include "lib/frame.cl"
-#include "voxelize/conservative.cl"
+#include "lib/range.cl"
+#include "lib/triangle.cl"
 #pragma OPENCL FP_CONTRACT OFF
-
-kernel void surface_lists(const vitrail_GridDesc grid, global const float* positions, global const uint* indices, uint vertexCount,
-                          global const uint* bits, global const uint* rank, global uint* list, global uint* cursor, global uint2* tasks,
-                          uint taskCapacity, global uint* status, ulong count, uint perItem) {
-    const Channels channels = {bits, rank, 0, 0, 0, list, cursor};
-    FOR_RANGE(i, count, perItem)
-        conservative_triangle(&grid, positions, indices, vertexCount, (uint)i, -1, 0, &channels, 0, tasks, taskCapacity, status);
-}
-
-kernel void surface_lists_tasks(const vitrail_GridDesc grid, global const float* positions, global const uint* indices, uint vertexCount,
-                                global const uint* bits, global const uint* rank, global uint* list, global uint* cursor,
-                                global uint2* tasks, uint taskCapacity, global uint* status, uint groups) {
-    const uint count = min(status[STATUS_TASKS], taskCapacity);
-    const Channels channels = {bits, rank, 0, 0, 0, list, cursor};
-    for (uint i = (uint)get_global_id(0); i < count; i += groups) {
-        const uint2 task = tasks[i];
-        if (task.x != 0xffffffffu)
-            conservative_triangle(&grid, positions, indices, vertexCount, task.x, (int)task.y, 0, &channels, 0, tasks, 0, status);
-    }
-}
 
 #define SURFACE_ONE REAL(4294967296.0f)
 

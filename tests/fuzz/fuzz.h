@@ -1,12 +1,12 @@
 // fuzz.h: what every fuzzer of a reader does: any bytes must give a scene or a vitrail::Error, in memory and time that fit them.
 #pragma once
-#include <cstddef>
-#include <cstdint>
-#include <span>
-
 #include <vitrail/core/error.h>
 #include <vitrail/io/image.h>
 #include <vitrail/io/load.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
 
 namespace vitrail::fuzz {
 

@@ -1,5 +1,7 @@
-// Every seed and finding of the fuzzers (tests/fuzz/corpus), and every file made from one by cutting it short or by changing a byte,
-// ends in a scene or a vitrail::Error, and asks for no more memory than its size explains.
+// Every seed and finding of the fuzzers (tests/fuzz/corpus), and every file made from one by cutting it short or by changing a
+// byte, ends in a scene or a vitrail::Error, and asks for no more memory than its size explains.
+#include <vitrail/io/image.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
@@ -9,8 +11,6 @@
 
 #include "io/readers.h"
 #include "tests/io/mesh_reading.h"
-
-#include <vitrail/io/image.h>
 
 namespace {
 std::atomic<std::size_t> largestRequest{0};
@@ -68,7 +68,8 @@ TEST_P(EveryCorpus, GivesASceneOrAnError) {
             EXPECT_LE(largestRequest.load(), 64 * whole.size() + 65536);
         }
         if (whole.size() > 4000) continue;
-        for (std::size_t size = 0; size < whole.size(); size += whole.size() > 1000 ? 7 : 1) read(std::string_view(whole).substr(0, size));
+        for (std::size_t size = 0; size<whole.size(); size += whole.size()> 1000 ? 7 : 1)
+            read(std::string_view(whole).substr(0, size));
         for (int i = 0; i < 400 && !whole.empty(); ++i) {
             std::string changed = whole;
             for (int n = 0; n < 1 + i % 3; ++n) changed[random() % changed.size()] = static_cast<char>(random() >> 8);

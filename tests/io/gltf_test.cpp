@@ -27,7 +27,8 @@ std::string base64(const std::string& bytes) {
     std::string text;
     for (std::size_t i = 0; i < bytes.size(); i += 3) {
         std::uint32_t three = 0;
-        for (std::size_t k = 0; k < 3; ++k) three = three << 8 | (i + k < bytes.size() ? static_cast<std::uint8_t>(bytes[i + k]) : 0u);
+        for (std::size_t k = 0; k < 3; ++k)
+            three = three << 8 | (i + k < bytes.size() ? static_cast<std::uint8_t>(bytes[i + k]) : 0u);
         for (std::size_t k = 0; k < 4; ++k) text.push_back(i + k > bytes.size() ? '=' : kLetters[(three >> (18 - 6 * k)) & 63]);
     }
     return text;
@@ -64,7 +65,8 @@ struct Document {
         return json["bufferViews"].size() - 1;
     }
     std::size_t accessor(const std::string& data, int type, const char* shape, std::size_t count, std::size_t stride = 0) {
-        json["accessors"].push_back({{"bufferView", view(data, stride)}, {"componentType", type}, {"type", shape}, {"count", count}});
+        json["accessors"].push_back(
+            {{"bufferView", view(data, stride)}, {"componentType", type}, {"type", shape}, {"count", count}});
         return json["accessors"].size() - 1;
     }
     void attribute(const char* name, const std::string& data, int type, const char* shape, std::size_t count) {
@@ -82,8 +84,8 @@ struct Document {
         text.resize((text.size() + 3) / 4 * 4, ' ');
         data.resize((data.size() + 3) / 4 * 4, '\0');
         const auto u32 = [](std::size_t v) { return packed<std::uint32_t>({static_cast<std::uint32_t>(v)}); };
-        return "glTF" + u32(2) + u32(12 + 8 + text.size() + 8 + data.size()) + u32(text.size()) + "JSON" + text + u32(data.size()) +
-               std::string("BIN\0", 4) + data;
+        return "glTF" + u32(2) + u32(12 + 8 + text.size() + 8 + data.size()) + u32(text.size()) + "JSON" + text +
+               u32(data.size()) + std::string("BIN\0", 4) + data;
     }
 };
 
@@ -213,9 +215,8 @@ TEST(Gltf, InterleavedAndSparse) {
 
     // The top moved up by a sparse accessor; then one over zeros alone.
     const std::size_t indices = d.view(packed<std::uint8_t>({3})), values = d.view(packed<float>({0, 0, 5}));
-    d.json["accessors"][0]["sparse"] = {{"count", 1},
-                                        {"indices", {{"bufferView", indices}, {"componentType", kU8}}},
-                                        {"values", {{"bufferView", values}}}};
+    d.json["accessors"][0]["sparse"] = {
+        {"count", 1}, {"indices", {{"bufferView", indices}, {"componentType", kU8}}}, {"values", {{"bufferView", values}}}};
     scene = read(d);
     EXPECT_EQ(scene.mesh.positions[3], Float3(0, 0, 5));
     EXPECT_EQ(scene.mesh.positions[1], Float3(1, 0, 0));
@@ -241,7 +242,8 @@ TEST(Gltf, QuantizedMeshes) {
     d.json["extensionsUsed"] = d.json["extensionsRequired"] = {"KHR_mesh_quantization"};
     const std::string shorts = packed<std::int16_t>({0, 0, 0, 0, 100, 0, 0, 0, 0, 100, 0, 0, 0, 0, 100, 0});
     d.primitive()["attributes"]["POSITION"] = d.accessor(shorts, kI16, "VEC3", 4, 8);
-    d.primitive()["attributes"]["NORMAL"] = d.accessor(packed<std::int8_t>({0, 0, 127, 0, -128, 0, 0, 0, 0, 127, 0, 0, 0, 0, 127, 0}), 5120, "VEC3", 4, 4);
+    d.primitive()["attributes"]["NORMAL"] =
+        d.accessor(packed<std::int8_t>({0, 0, 127, 0, -128, 0, 0, 0, 0, 127, 0, 0, 0, 0, 127, 0}), 5120, "VEC3", 4, 4);
     d.json["accessors"][1]["normalized"] = true;
     d.primitive()["indices"] = d.accessor(kTetrahedronFaces, kU16, "SCALAR", 12);
     d.json["nodes"][0]["scale"] = {0.01, 0.01, 0.01};
@@ -345,7 +347,8 @@ TEST(Gltf, ColoursAndTexcoords) {
 
 TEST(Gltf, MorphTargetsAtTheirDefaultWeights) {
     Document d = tetrahedron();
-    d.primitive()["targets"] = {{{"POSITION", d.accessor(packed<float>({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 4}), kFloat, "VEC3", 4)}}};
+    d.primitive()["targets"] = {
+        {{"POSITION", d.accessor(packed<float>({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 4}), kFloat, "VEC3", 4)}}};
     EXPECT_EQ(read(d).mesh.positions[3], Float3(0, 0, 1));
     d.json["meshes"][0]["weights"] = {0.5};
     EXPECT_EQ(read(d).mesh.positions[3], Float3(0, 0, 3));
@@ -355,7 +358,8 @@ TEST(Gltf, MorphTargetsAtTheirDefaultWeights) {
 
 // ---- skins ----
 
-// Two joints, 10 and 20 above the ground; the inverse bind matrix of the first takes it down by 10, the second has none of its own.
+// Two joints, 10 and 20 above the ground; the inverse bind matrix of the first takes it down by 10, the second has none of its
+// own.
 Document skinned() {
     Document d = tetrahedron();
     d.attribute("JOINTS_0", packed<std::uint8_t>({0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}), kU8, "VEC4", 4);
@@ -420,8 +424,8 @@ TEST(GltfSkin, FaultsAreErrors) {
 
 TEST(Gltf, MaterialsWithTheirExtensions) {
     Document d = tetrahedron();
-    d.json["extensionsRequired"] = {"KHR_materials_transmission", "KHR_materials_ior", "KHR_materials_volume", "KHR_texture_transform",
-                                    "KHR_materials_emissive_strength"};
+    d.json["extensionsRequired"] = {"KHR_materials_transmission", "KHR_materials_ior", "KHR_materials_volume",
+                                    "KHR_texture_transform", "KHR_materials_emissive_strength"};
     d.json["images"] = {{{"uri", "none.png"}}};
     d.json["textures"] = {{{"source", 0}}};
     d.json["materials"] = {
@@ -435,12 +439,14 @@ TEST(Gltf, MaterialsWithTheirExtensions) {
            {"roughnessFactor", 0.125},
            {"baseColorTexture",
             {{"index", 0},
-             {"extensions", {{"KHR_texture_transform", {{"offset", {0.5, 1}}, {"scale", {2, 3}}, {"rotation", 1.5}, {"texCoord", 1}}}}}}}}},
+             {"extensions",
+              {{"KHR_texture_transform", {{"offset", {0.5, 1}}, {"scale", {2, 3}}, {"rotation", 1.5}, {"texCoord", 1}}}}}}}}},
          {"extensions",
           {{"KHR_materials_transmission", {{"transmissionFactor", 0.5}}},
            {"KHR_materials_ior", {{"ior", 1.55}}},
            {"KHR_materials_emissive_strength", {{"emissiveStrength", 4}}},
-           {"KHR_materials_volume", {{"thicknessFactor", 2}, {"attenuationDistance", 0.5}, {"attenuationColor", {0.5, 0.25, 0}}}}}}},
+           {"KHR_materials_volume",
+            {{"thicknessFactor", 2}, {"attenuationDistance", 0.5}, {"attenuationColor", {0.5, 0.25, 0}}}}}}},
         {{"alphaMode", "BLEND"}, {"extensions", {{"KHR_materials_ior", {{"ior", 0}}}}}}};
     d.primitive()["material"] = 0;
     const Scene scene = read(d);
@@ -602,7 +608,8 @@ TEST(GltfFault, Buffers) {
     EXPECT_EQ(failure(d, "bufferViews[1]"), ErrorCode::badFile) << "a view past the stated length";
     d.json["buffers"][0]["uri"] = "missing.bin";
     EXPECT_EQ(failure(d, "no folder"), ErrorCode::badFile);
-    for (const char* uri : {"../missing.bin", "/etc/hostname", "%2e%2e/missing.bin", "a/../../b.bin", "https://example.org/a.bin", ""}) {
+    for (const char* uri :
+         {"../missing.bin", "/etc/hostname", "%2e%2e/missing.bin", "a/../../b.bin", "https://example.org/a.bin", ""}) {
         d.json["buffers"][0]["uri"] = uri;
         EXPECT_EQ(failure(d.text(), "leads out", std::filesystem::temp_directory_path()), ErrorCode::badFile) << uri;
     }
@@ -639,7 +646,12 @@ TEST(GltfFault, ViewsAndAccessors) {
     broken([](Json& j) { j["accessors"][0]["componentType"] = 5130; }, "componentType 5130");
     broken([](Json& j) { j["accessors"][0].erase("bufferView"); }, "accessors[0]");
     broken([](Json& j) { j["accessors"][0]["bufferView"] = 77; }, "no buffer view 77");
-    broken([](Json& j) { j["accessors"][1]["componentType"] = 5126; j["accessors"][1]["count"] = 6; }, "unsigned whole");
+    broken(
+        [](Json& j) {
+            j["accessors"][1]["componentType"] = 5126;
+            j["accessors"][1]["count"] = 6;
+        },
+        "unsigned whole");
     broken([](Json& j) { j["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 9; }, "no accessor 9");
     broken([](Json& j) { j["meshes"][0]["primitives"][0]["indices"] = 9; }, "");
     broken([](Json& j) { j["meshes"][0]["primitives"][0]["material"] = 9; }, "no material 9");
@@ -718,7 +730,13 @@ INSTANTIATE_TEST_SUITE_P(
         RealFile{"TransmissionTest.glb", 66902, 128775, 14, 3, {-0.976f, -0.4f, -0.521f}, {0.826f, 0.621f, 1.368f}},
         RealFile{"GlassVaseFlowers.glb", 8550, 14036, 3, 1, {-0.0535f, 0, -0.0683f}, {0.1638f, 0.2032f, 0.0743f}},
         RealFile{"GlassHurricaneCandleHolder.glb", 2386, 4126, 2, 1, {-0.0952f, 0, -0.0952f}, {0.0952f, 0.3066f, 0.0952f}},
-        RealFile{"MosquitoInAmber/MosquitoInAmber.gltf", 18678, 14349, 3, 1, {-0.0496f, -0.0485f, -0.0511f}, {0.0476f, 0.0511f, 0.0368f}},
+        RealFile{"MosquitoInAmber/MosquitoInAmber.gltf",
+                 18678,
+                 14349,
+                 3,
+                 1,
+                 {-0.0496f, -0.0485f, -0.0511f},
+                 {0.0476f, 0.0511f, 0.0368f}},
         // Skinned figures stand upright on the ground, about y.
         RealFile{"CesiumMan.glb", 3273, 4672, 1, 1, {-0.569f, 0, -0.131f}, {0.569f, 1.507f, 0.181f}},
         RealFile{"Fox.glb", 1728, 576, 1, 1, {-12.59f, -0.12f, -88.1f}, {12.59f, 78.91f, 66.62f}},

@@ -10,7 +10,7 @@ namespace {
 
 struct MeshFile {
     const char* file;
-    std::size_t vertices;   // as they arrive: as stored, or split at seams of texture coordinates
+    std::size_t vertices;  // as they arrive: as stored, or split at seams of texture coordinates
     std::size_t triangles;
     std::uint64_t openEdges, nonManifoldEdges, flippedEdges, duplicated, degenerate;
 };
@@ -35,40 +35,35 @@ TEST_P(EveryMeshFile, ArrivesWhole) {
     EXPECT_EQ(report.degenerateTriangles, expected.degenerate);
 }
 
-INSTANTIATE_TEST_SUITE_P(Meshes, EveryMeshFile,
-                         testing::Values(MeshFile{"meshes/dragon_vrip_res2.ply", 100250, 202520, 0, 2534, 0, 1489, 0},
-                                         MeshFile{"meshes/dragon_vrip_res3.ply", 22998, 47794, 0, 2094, 0, 1254, 0},
-                                         MeshFile{"meshes/dragon_vrip_res4.ply", 5205, 11102, 0, 803, 0, 502, 0},
-                                         MeshFile{"meshes/bun_zipper.ply", 35947, 69451, 223, 0, 0, 0, 0},
-                                         MeshFile{"meshes/bunny_hr.obj", 29834, 59664, 0, 0, 0, 0, 0},
-                                         MeshFile{"meshes/buddha.ply", 29609, 51414, 0, 0, 0, 0, 0},
-                                         MeshFile{"meshes/xyzrgb_dragon.obj", 14101, 28198, 0, 0, 0, 0, 0},
-                                         MeshFile{"meshes/horse.ply", 48485, 96966, 0, 0, 0, 0, 0},
-                                         MeshFile{"meshes/turbineblade.ply", 99519, 199034, 0, 0, 0, 0, 0},
-                                         MeshFile{"meshes/igea.ply", 134345, 268686, 0, 0, 0, 0, 0},
-                                         MeshFile{"meshes/teapot.ply", 1177, 2256, 96, 0, 0, 0, 0},
-                                         MeshFile{"meshes/teapot.obj", 3644, 6320, 160, 0, 0, 0, 0},
-                                         MeshFile{"meshes/torus.obj", 2304, 4608, 0, 0, 0, 0, 0},
-                                         MeshFile{"meshes/cube.obj", 14, 12, 0, 0, 0, 0, 0},
-                                         MeshFile{"meshes/hand_closed.obj", 7993, 15982, 0, 0, 0, 0, 0},
-                                         MeshFile{"meshes/scorpion.obj", 49997, 99990, 0, 0, 0, 0, 0},
-                                         MeshFile{"meshes/skull.obj", 49999, 100002, 0, 0, 0, 0, 0},
-                                         MeshFile{"meshes/falconstatue.obj", 25839, 51674, 0, 0, 0, 0, 0},
-                                         MeshFile{"meshes/fertility.off", 4494, 9000, 0, 0, 0, 0, 0},
-                                         MeshFile{"meshes/spot.obj", 3225, 5856, 0, 0, 0, 0, 0},
-                                         MeshFile{"meshes/concave_polygon.obj", 64, 64, 64, 0, 0, 0, 0},
-                                         MeshFile{"meshes/cube_binary_starts_with_nl.ply", 8, 12, 0, 0, 0, 0, 0},
-                                         // Nasty, but meshes: numbers in a report, not errors.
-                                         MeshFile{"bad/fan3.obj", 5, 3, 6, 1, 0, 0, 0},
-                                         MeshFile{"bad/moebius.obj", 280, 448, 112, 0, 4, 0, 0},
-                                         MeshFile{"bad/hourglass_ico.obj", 23, 40, 0, 0, 0, 0, 0},
-                                         MeshFile{"bad/triple_vierbein.obj", 75, 108, 60, 20, 3, 0, 0},
-                                         MeshFile{"bad/self_intersectA.obj", 8582, 17160, 0, 0, 0, 0, 0}),
-                         [](const auto& info) {
-                             std::string name = info.param.file;
-                             std::replace_if(name.begin(), name.end(), [](char c) { return c == '/' || c == '.'; }, '_');
-                             return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Meshes, EveryMeshFile,
+    testing::Values(
+        MeshFile{"meshes/dragon_vrip_res2.ply", 100250, 202520, 0, 2534, 0, 1489, 0},
+        MeshFile{"meshes/dragon_vrip_res3.ply", 22998, 47794, 0, 2094, 0, 1254, 0},
+        MeshFile{"meshes/dragon_vrip_res4.ply", 5205, 11102, 0, 803, 0, 502, 0},
+        MeshFile{"meshes/bun_zipper.ply", 35947, 69451, 223, 0, 0, 0, 0},
+        MeshFile{"meshes/bunny_hr.obj", 29834, 59664, 0, 0, 0, 0, 0}, MeshFile{"meshes/buddha.ply", 29609, 51414, 0, 0, 0, 0, 0},
+        MeshFile{"meshes/xyzrgb_dragon.obj", 14101, 28198, 0, 0, 0, 0, 0},
+        MeshFile{"meshes/horse.ply", 48485, 96966, 0, 0, 0, 0, 0},
+        MeshFile{"meshes/turbineblade.ply", 99519, 199034, 0, 0, 0, 0, 0},
+        MeshFile{"meshes/igea.ply", 134345, 268686, 0, 0, 0, 0, 0}, MeshFile{"meshes/teapot.ply", 1177, 2256, 96, 0, 0, 0, 0},
+        MeshFile{"meshes/teapot.obj", 3644, 6320, 160, 0, 0, 0, 0}, MeshFile{"meshes/torus.obj", 2304, 4608, 0, 0, 0, 0, 0},
+        MeshFile{"meshes/cube.obj", 14, 12, 0, 0, 0, 0, 0}, MeshFile{"meshes/hand_closed.obj", 7993, 15982, 0, 0, 0, 0, 0},
+        MeshFile{"meshes/scorpion.obj", 49997, 99990, 0, 0, 0, 0, 0}, MeshFile{"meshes/skull.obj", 49999, 100002, 0, 0, 0, 0, 0},
+        MeshFile{"meshes/falconstatue.obj", 25839, 51674, 0, 0, 0, 0, 0},
+        MeshFile{"meshes/fertility.off", 4494, 9000, 0, 0, 0, 0, 0}, MeshFile{"meshes/spot.obj", 3225, 5856, 0, 0, 0, 0, 0},
+        MeshFile{"meshes/concave_polygon.obj", 64, 64, 64, 0, 0, 0, 0},
+        MeshFile{"meshes/cube_binary_starts_with_nl.ply", 8, 12, 0, 0, 0, 0, 0},
+        // Nasty, but meshes: numbers in a report, not errors.
+        MeshFile{"bad/fan3.obj", 5, 3, 6, 1, 0, 0, 0}, MeshFile{"bad/moebius.obj", 280, 448, 112, 0, 4, 0, 0},
+        MeshFile{"bad/hourglass_ico.obj", 23, 40, 0, 0, 0, 0, 0}, MeshFile{"bad/triple_vierbein.obj", 75, 108, 60, 20, 3, 0, 0},
+        MeshFile{"bad/self_intersectA.obj", 8582, 17160, 0, 0, 0, 0, 0}),
+    [](const auto& info) {
+        std::string name = info.param.file;
+        std::replace_if(
+            name.begin(), name.end(), [](char c) { return c == '/' || c == '.'; }, '_');
+        return name;
+    });
 
 TEST(MeshFiles, InwardWindingStaysAsItCame) {
     const std::filesystem::path file = test::dataFile("meshes/horse.ply");
@@ -88,8 +83,8 @@ TEST(MeshFiles, NormalsColoursAndTextureCoordinatesArrive) {
     EXPECT_EQ(buddha.colours.size(), 29609u);
 }
 
-// The n-gon is a ring, cut open along a bridge whose two corners occur twice. A right triangulation covers its area once: triangles of one
-// winding whose areas sum to the polygon's own, which is the sum over its signed fan.
+// The n-gon is a ring, cut open along a bridge whose two corners occur twice. A right triangulation covers its area once:
+// triangles of one winding whose areas sum to the polygon's own, which is the sum over its signed fan.
 TEST(MeshFiles, TheConcavePolygonIsCoveredOnce) {
     const std::filesystem::path file = test::dataFile("meshes/concave_polygon.obj");
     VITRAIL_NEEDS_DATA(file);
@@ -109,7 +104,7 @@ TEST(MeshFiles, TheConcavePolygonIsCoveredOnce) {
 
 struct BadFile {
     const char* file;
-    const char* line;   // of the message, or "" where the file has none
+    const char* line;  // of the message, or "" where the file has none
     const char* words;
 };
 
@@ -176,7 +171,8 @@ TEST(MeshFiles, CutFilesAreErrors) {
         EXPECT_TRUE(test::readError("ply", std::string_view(whole).substr(0, size)).has_value()) << size;
 }
 
-// OBJ has no counts: what is left of it is either a fault in the last line, or a smaller mesh that nothing tells from a whole one.
+// OBJ has no counts: what is left of it is either a fault in the last line, or a smaller mesh that nothing tells from a whole
+// one.
 TEST(MeshFiles, CutObjFilesAreErrorsOrSmallerMeshes) {
     const std::filesystem::path file = test::dataFile("meshes/spot.obj");
     VITRAIL_NEEDS_DATA(file);

@@ -1,6 +1,8 @@
 // tests/io/mesh_reading.h: meshes from text and bytes that a test makes.
 #pragma once
 #include <gtest/gtest.h>
+#include <vitrail/core/error.h>
+#include <vitrail/io/load.h>
 
 #include <algorithm>
 #include <array>
@@ -9,9 +11,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-
-#include <vitrail/core/error.h>
-#include <vitrail/io/load.h>
 
 namespace vitrail::test {
 

@@ -11,10 +11,11 @@ using test::readMesh;
 const std::string kData = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
 
 TEST(Off, CountsAndCommentsWhereverTheyStand) {
-    for (const std::string& file :
-         std::vector<std::string>{"OFF\n3 1 0\n" + kData, "OFF 3 1 0\n" + kData, "3 1 0\n" + kData, "OFF\n3 1\n" + kData, "OFF\n3\n1\n0\n" + kData,
-          "# made\nOFF # kind\n\n# counts\n3 1 0 # no edges\n\n0 0 0 # first\r\n1 0 0\r\n\r\n0 1 0\r\n# faces\r\n3 0 1 2 # last",
-          "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 255 0 0\n", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3\n0 1\n2\n"}) {
+    for (const std::string& file : std::vector<std::string>{
+             "OFF\n3 1 0\n" + kData, "OFF 3 1 0\n" + kData, "3 1 0\n" + kData, "OFF\n3 1\n" + kData, "OFF\n3\n1\n0\n" + kData,
+             "# made\nOFF # kind\n\n# counts\n3 1 0 # no edges\n\n0 0 0 # first\r\n1 0 0\r\n\r\n0 1 0\r\n# faces\r\n3 0 1 2 # "
+             "last",
+             "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 255 0 0\n", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3\n0 1\n2\n"}) {
         const Mesh mesh = readMesh("off", file);
         EXPECT_EQ(mesh.positions, (std::vector<Float3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})) << file;
         EXPECT_EQ(mesh.indices, (std::vector<std::uint32_t>{0, 1, 2})) << file;
@@ -23,8 +24,9 @@ TEST(Off, CountsAndCommentsWhereverTheyStand) {
 }
 
 TEST(Off, PrefixesSayWhatFollowsThePosition) {
-    const Mesh all = readMesh("off", "STCNOFF\n3 1 0\n0 0 0  0 0 1  255 0 188 255  0.25 0.75\n1 0 0  0 0 1  0 0 0 255  1 0\n"
-                                     "0 1 0  0 0 1  0 0 0 0  0 1\n3 0 1 2\n");
+    const Mesh all = readMesh("off",
+                              "STCNOFF\n3 1 0\n0 0 0  0 0 1  255 0 188 255  0.25 0.75\n1 0 0  0 0 1  0 0 0 255  1 0\n"
+                              "0 1 0  0 0 1  0 0 0 0  0 1\n3 0 1 2\n");
     EXPECT_EQ(all.normals, std::vector<Float3>(3, Float3(0, 0, 1)));
     EXPECT_EQ(all.texcoords[0], Float2(0.25f, 0.25f));
     EXPECT_EQ(all.colours[0].x, 1.0f);
@@ -49,11 +51,14 @@ TEST(Off, Binary) {
     const Mesh mesh = readMesh("off", good);
     EXPECT_EQ(mesh.positions[1], Float3(1, 0, 0));
     EXPECT_EQ(mesh.triangleCount(), 1u);
-    for (std::size_t size = 0; size < good.size(); ++size) EXPECT_TRUE(test::readError("off", good.substr(0, size)).has_value()) << size;
+    for (std::size_t size = 0; size < good.size(); ++size)
+        EXPECT_TRUE(test::readError("off", good.substr(0, size)).has_value()) << size;
     expectBad("off", "OFF BINARY\n" + i(0x7fffffff) + i(1) + i(0) + vertices, "made.off, byte 11", "2147483647 vertices");
     expectBad("off", "OFF BINARY\n" + i(-1) + i(1) + i(0) + vertices, "made.off, byte 11", "-1 vertices");
-    expectBad("off", "OFF BINARY\n" + i(3) + i(1) + i(0) + vertices + i(1000) + i(0) + i(1) + i(2) + i(0), "made.off, byte 59", "1000 corners");
-    expectBad("off", "OFF BINARY\n" + i(3) + i(1) + i(0) + vertices + i(3) + i(0) + i(1) + i(3) + i(0), "made.off, byte 59", "names vertex 3");
+    expectBad("off", "OFF BINARY\n" + i(3) + i(1) + i(0) + vertices + i(1000) + i(0) + i(1) + i(2) + i(0), "made.off, byte 59",
+              "1000 corners");
+    expectBad("off", "OFF BINARY\n" + i(3) + i(1) + i(0) + vertices + i(3) + i(0) + i(1) + i(3) + i(0), "made.off, byte 59",
+              "names vertex 3");
 }
 
 TEST(Off, Faults) {

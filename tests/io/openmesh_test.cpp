@@ -1,5 +1,7 @@
-// Our PLY, STL and OFF against those of OpenMesh, where OpenMesh can read the file: the same vertices, bit for bit, and the same faces. The
-// importer takes a soup, since half-edges cannot hold what is not manifold.
+// Our PLY, STL and OFF against those of OpenMesh, where OpenMesh can read the file: the same vertices, bit for bit, and the same
+// faces. The importer takes a soup, since half-edges cannot hold what is not manifold.
+#include <vitrail/io/save.h>
+
 #include <OpenMesh/Core/IO/importer/BaseImporter.hh>
 #include <OpenMesh/Core/IO/reader/OFFReader.hh>
 #include <OpenMesh/Core/IO/reader/PLYReader.hh>
@@ -11,8 +13,6 @@
 
 #include "tests/io/mesh_reading.h"
 #include "tests/support/data.h"
-
-#include <vitrail/io/save.h>
 
 namespace vitrail {
 namespace {
@@ -30,7 +30,9 @@ public:
         return om::VertexHandle(static_cast<int>(positions.size()) - 1);
     }
     om::VertexHandle add_vertex() override { return add_vertex(om::Vec3f(0.0f)); }
-    void set_point(om::VertexHandle v, const om::Vec3f& p) override { positions[static_cast<std::size_t>(v.idx())] = {p[0], p[1], p[2]}; }
+    void set_point(om::VertexHandle v, const om::Vec3f& p) override {
+        positions[static_cast<std::size_t>(v.idx())] = {p[0], p[1], p[2]};
+    }
     om::FaceHandle add_face(const VHandles& corners) override {
         onlyTriangles = onlyTriangles && corners.size() == 3;
         for (const om::VertexHandle v : corners) triangles.push_back(static_cast<std::uint32_t>(v.idx()));
@@ -96,18 +98,21 @@ class EveryFileOpenMeshReads : public testing::TestWithParam<const char*> {};
 TEST_P(EveryFileOpenMeshReads, ArrivesTheSame) {
     const std::filesystem::path file = test::dataFile(GetParam());
     VITRAIL_NEEDS_DATA(file);
-    om::IO::BaseReader& reader = file.extension() == ".off" ? static_cast<om::IO::BaseReader&>(om::IO::OFFReader()) : om::IO::PLYReader();
+    om::IO::BaseReader& reader =
+        file.extension() == ".off" ? static_cast<om::IO::BaseReader&>(om::IO::OFFReader()) : om::IO::PLYReader();
     expectSame(reader, std::ifstream(file, std::ios::binary), load(file));
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, EveryFileOpenMeshReads,
-                         testing::Values("meshes/dragon_vrip_res2.ply", "meshes/bun_zipper.ply", "meshes/buddha.ply", "meshes/horse.ply",
-                                         "meshes/turbineblade.ply", "meshes/teapot.ply", "meshes/fertility.off"),
+                         testing::Values("meshes/dragon_vrip_res2.ply", "meshes/bun_zipper.ply", "meshes/buddha.ply",
+                                         "meshes/horse.ply", "meshes/turbineblade.ply", "meshes/teapot.ply",
+                                         "meshes/fertility.off"),
                          [](const auto& info) { return "Number" + std::to_string(info.index); });
 
 TEST(OpenMesh, ReadsTheSameStl) {
-    const std::string ascii = "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0.1 0 0\nvertex 1e-3 0 2.5\nvertex 0 1 0\nendloop\nendfacet\n"
-                              "facet normal 0 0 1\nouter loop\nvertex 0 1 0\nvertex 1e-3 0 2.5\nvertex 7 7 7\nendloop\nendfacet\nendsolid x\n";
+    const std::string ascii =
+        "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0.1 0 0\nvertex 1e-3 0 2.5\nvertex 0 1 0\nendloop\nendfacet\n"
+        "facet normal 0 0 1\nouter loop\nvertex 0 1 0\nvertex 1e-3 0 2.5\nvertex 7 7 7\nendloop\nendfacet\nendsolid x\n";
     expectSame(om::IO::STLReader(), std::istringstream(ascii), test::readMesh("stl", ascii));
 }
 

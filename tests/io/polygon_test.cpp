@@ -1,11 +1,11 @@
 // Polygons come apart into triangles that cover them once.
+#include "io/polygon.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-
-#include "io/polygon.h"
 
 namespace vitrail {
 namespace {
@@ -64,10 +64,11 @@ TEST(Polygon, ConvexOnesAreFans) {
 }
 
 TEST(Polygon, ConcaveOnes) {
-    expectCoveredHoweverTurned({{0, 0, 0}, {4, 0, 0}, {1, 1, 0}, {0, 4, 0}});                                      // an arrow head
-    expectCoveredHoweverTurned({{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}});                // an L
+    expectCoveredHoweverTurned({{0, 0, 0}, {4, 0, 0}, {1, 1, 0}, {0, 4, 0}});                        // an arrow head
+    expectCoveredHoweverTurned({{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}});  // an L
     expectCoveredHoweverTurned({{0, 0, 0}, {5, 0, 0}, {5, 3, 0}, {4, 3, 0}, {4, 1, 0}, {1, 1, 0}, {1, 3, 0}, {0, 3, 0}});  // a U
-    expectCoveredHoweverTurned({{0, 0, 0}, {6, 0, 0}, {6, 3, 0}, {5, 1, 0}, {4, 3, 0}, {3, 1, 0}, {2, 3, 0}, {1, 1, 0}, {0, 3, 0}});
+    expectCoveredHoweverTurned(
+        {{0, 0, 0}, {6, 0, 0}, {6, 3, 0}, {5, 1, 0}, {4, 3, 0}, {3, 1, 0}, {2, 3, 0}, {1, 1, 0}, {0, 3, 0}});
 }
 
 TEST(Polygon, CornersOnALineAndTwice) {
@@ -77,19 +78,23 @@ TEST(Polygon, CornersOnALineAndTwice) {
 
 // A square with a square hole, joined to the rim by a bridge that is run twice.
 TEST(Polygon, AHoleOnABridge) {
-    expectCoveredHoweverTurned({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 0}, {1, 1, 0}, {1, 3, 0}, {3, 3, 0}, {3, 1, 0}, {1, 1, 0}});
+    expectCoveredHoweverTurned(
+        {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 0}, {1, 1, 0}, {1, 3, 0}, {3, 3, 0}, {3, 1, 0}, {1, 1, 0}});
 }
 
 TEST(Polygon, Spiral) {
     std::vector<Float3> spiral;
-    for (int i = 0; i <= 200; ++i) spiral.emplace_back((1 + i * 0.05f) * std::cos(i * 0.1f), (1 + i * 0.05f) * std::sin(i * 0.1f), 0.0f);
-    for (int i = 200; i >= 0; --i) spiral.emplace_back((1.5f + i * 0.05f) * std::cos(i * 0.1f), (1.5f + i * 0.05f) * std::sin(i * 0.1f), 0.0f);
+    for (int i = 0; i <= 200; ++i)
+        spiral.emplace_back((1 + i * 0.05f) * std::cos(i * 0.1f), (1 + i * 0.05f) * std::sin(i * 0.1f), 0.0f);
+    for (int i = 200; i >= 0; --i)
+        spiral.emplace_back((1.5f + i * 0.05f) * std::cos(i * 0.1f), (1.5f + i * 0.05f) * std::sin(i * 0.1f), 0.0f);
     expectCovered(spiral);
     std::reverse(spiral.begin(), spiral.end());
     expectCovered(spiral);
 }
 
-// A comb of 8000 corners, half of them reflex, is within what is cut rightly; one of 32000 may not be, and must not take minutes either.
+// A comb of 8000 corners, half of them reflex, is within what is cut rightly; one of 32000 may not be, and must not take minutes
+// either.
 TEST(Polygon, ACombOfManyTeeth) {
     for (const int teeth : {4000, 16000}) {
         std::vector<Float3> comb;

@@ -103,7 +103,8 @@ const std::vector<std::string> kEndings = {".npy", ".raw", ".vox"};
 // ---- there and back ----
 
 TEST_F(VoxelFiles, RoundTripsKeepEveryBit) {
-    for (const Uint3 size : {Uint3(5, 7, 33), Uint3(300, 3, 2), Uint3(1, 1, 1), Uint3(8, 8, 32), Uint3(31, 33, 9), Uint3(2, 257, 513)}) {
+    for (const Uint3 size :
+         {Uint3(5, 7, 33), Uint3(300, 3, 2), Uint3(1, 1, 1), Uint3(8, 8, 32), Uint3(31, 33, 9), Uint3(2, 257, 513)}) {
         const VoxelBits voxels = speckled(size);
         for (const std::string& ending : kEndings) {
             for (const bool zUp : {false, true}) {
@@ -111,7 +112,8 @@ TEST_F(VoxelFiles, RoundTripsKeepEveryBit) {
                 saveVoxels(file, voxels, {.zUp = zUp});
                 const VoxelBits expected = zUp ? turned(voxels) : voxels;
                 const VoxelBits back = loadVoxels(file, expected.grid);
-                EXPECT_EQ(back.words, expected.words) << ending << " " << size.x << " x " << size.y << " x " << size.z << " zUp " << zUp;
+                EXPECT_EQ(back.words, expected.words)
+                    << ending << " " << size.x << " x " << size.y << " x " << size.z << " zUp " << zUp;
             }
         }
     }
@@ -176,7 +178,8 @@ TEST_F(VoxelFiles, NpyHasNumPysBytes) {
     const std::string bytes = contents(folder_ / "a.npy");
     // numpy.save of an array of uint8 with this shape: 118 = 0x76 bytes of header, so that data start at 128.
     const std::string dictionary = "{'descr': '|u1', 'fortran_order': False, 'shape': (4, 2, 3), }";
-    const std::string expected = std::string("\x93NUMPY\x01\x00\x76\x00", 10) + dictionary + std::string(117 - dictionary.size(), ' ') + "\n";
+    const std::string expected =
+        std::string("\x93NUMPY\x01\x00\x76\x00", 10) + dictionary + std::string(117 - dictionary.size(), ' ') + "\n";
     ASSERT_EQ(bytes.size(), 128u + 24u);
     EXPECT_EQ(bytes.substr(0, 128), expected);
     for (std::size_t i = 0; i < 24; ++i) EXPECT_EQ(bytes[128 + i], i == 1 || i == 23 ? 1 : 0) << i;
@@ -185,7 +188,8 @@ TEST_F(VoxelFiles, NpyHasNumPysBytes) {
 std::string npy(const std::string& dictionary, const std::string& data, char version = 1) {
     std::string bytes = std::string("\x93NUMPY", 6) + version + '\0';
     const std::string header = dictionary + "\n";
-    bytes += version == 1 ? i32(static_cast<std::int64_t>(header.size())).substr(0, 2) : i32(static_cast<std::int64_t>(header.size()));
+    bytes +=
+        version == 1 ? i32(static_cast<std::int64_t>(header.size())).substr(0, 2) : i32(static_cast<std::int64_t>(header.size()));
     return bytes + header + data;
 }
 
@@ -205,7 +209,8 @@ TEST_F(VoxelFiles, NpyOfEveryWholeType) {
         EXPECT_TRUE(voxels.at(1, 0, 0) && voxels.at(0, 0, 2) && voxels.at(1, 0, 2)) << type;
     }
     // Fortran order: z fastest. Version 2 has a longer length; other tools leave out spaces and use double quotes.
-    put(folder_ / "a.npy", npy("{\"descr\":\"|u1\",\"fortran_order\":True,\"shape\":(3,1,2)}", std::string("\0\0\1\0\0\0", 6), 2));
+    put(folder_ / "a.npy",
+        npy("{\"descr\":\"|u1\",\"fortran_order\":True,\"shape\":(3,1,2)}", std::string("\0\0\1\0\0\0", 6), 2));
     const VoxelBits voxels = loadVoxels(folder_ / "a.npy", grid);
     EXPECT_EQ(voxels.occupied(), 1u);
     EXPECT_TRUE(voxels.at(0, 0, 2));
@@ -228,7 +233,8 @@ TEST_F(VoxelFiles, NpyFaults) {
     expect(npy("{'descr': [('a', '<f4')], 'fortran_order': False, 'shape': (3, 1, 2), }", six), "descr", ErrorCode::unsupported);
     expect(npy("{'descr': '|u1', 'fortran_order': False, 'shape': (6,), }", six), "1 dimensions", ErrorCode::badInput);
     expect(npy("{'descr': '|u1', 'fortran_order': False, 'shape': (2, 1, 3), }", six), "3 x 1 x 2", ErrorCode::badInput);
-    expect(npy("{'descr': '|u1', 'fortran_order': False, 'shape': (99999999999999999999, 1, 2), }", six), "shape", ErrorCode::badFile);
+    expect(npy("{'descr': '|u1', 'fortran_order': False, 'shape': (99999999999999999999, 1, 2), }", six), "shape",
+           ErrorCode::badFile);
     expect(npy("{'descr': '|u1', 'fortran_order': False, 'shape': (3, -1, 2), }", six), "shape", ErrorCode::badFile);
     expect(npy("{'descr': '|u1', 'fortran_order': False, }", six), "'shape'", ErrorCode::badFile);
     expect(npy("{'descr': '|u1", ""), "", ErrorCode::unsupported);
@@ -277,8 +283,8 @@ TEST_F(VoxelFiles, VoxOfOneModel) {
     VoxelBits voxels(Grid::box(kOrigin, kEdge, {3, 2, 4}));
     voxels.set(2, 1, 3);
     saveVoxels(folder_ / "a.vox", voxels);
-    const std::string expected = "VOX " + i32(150) + "MAIN" + i32(0) + i32(24 + 20) + "SIZE" + i32(12) + i32(0) + i32(3) + i32(2) + i32(4) +
-                                 "XYZI" + i32(8) + i32(0) + i32(1) + "\x02\x01\x03\x01";
+    const std::string expected = "VOX " + i32(150) + "MAIN" + i32(0) + i32(24 + 20) + "SIZE" + i32(12) + i32(0) + i32(3) +
+                                 i32(2) + i32(4) + "XYZI" + i32(8) + i32(0) + i32(1) + "\x02\x01\x03\x01";
     EXPECT_EQ(contents(folder_ / "a.vox"), expected);
 }
 
@@ -303,7 +309,9 @@ TEST_F(VoxelFiles, VoxOverOneModelIsPlacedByAGraph) {
 std::string chunk(const std::string& name, const std::string& content) {
     return name + i32(static_cast<std::int64_t>(content.size())) + i32(0) + content;
 }
-std::string vox(const std::string& children) { return "VOX " + i32(200) + "MAIN" + i32(0) + i32(static_cast<std::int64_t>(children.size())) + children; }
+std::string vox(const std::string& children) {
+    return "VOX " + i32(200) + "MAIN" + i32(0) + i32(static_cast<std::int64_t>(children.size())) + children;
+}
 std::string voxText(const std::string& text) { return i32(static_cast<std::int64_t>(text.size())) + text; }
 std::string voxModel(int x, int y, int z, const std::string& cells) {
     return chunk("SIZE", i32(x) + i32(y) + i32(z)) + chunk("XYZI", i32(static_cast<std::int64_t>(cells.size() / 4)) + cells);
@@ -423,7 +431,8 @@ TEST_F(VoxelFiles, PlyHasOuterFacesOnly) {
             }
         }
         EXPECT_EQ(cubes.quads.size(), faces);
-        // One volume of an edge cubed for each voxel; coordinates are within 100, sums of a few thousand floats within 1e-4 of it.
+        // One volume of an edge cubed for each voxel; coordinates are within 100, sums of a few thousand floats within 1e-4 of
+        // it.
         EXPECT_NEAR(volume(cubes) / (kEdge * kEdge * kEdge), double(voxels.occupied()), 1e-4 * double(voxels.occupied()));
         std::set<std::array<float, 3>> corners;
         for (const Float3& p : cubes.positions) EXPECT_TRUE(corners.insert({p.x, p.y, p.z}).second);

@@ -9,6 +9,7 @@
 //             bits (no overflow below 2^39 triangles), stored as two signed 16-bit octahedral coordinates; error below 0.004 degrees;
 //             0 (the +z normal) where the sum vanishes
 //   material  u32, the lowest material id
+// A voxelizer that says so in its header counts points of triangles instead of triangles.
 // Occupancy mip: one byte a tile, bit b set if slices 8b to 8b+7 of the tile's 8 x 8 columns hold a voxel: an 8^3 mip.
 #pragma once
 #include <cstdint>

@@ -1,0 +1,195 @@
+#!/usr/bin/env python3
+"""bench/plot/plot.py: error against time, from a benchmark's JSON or that of `vitrail compare --json`, as SVG or PNG.
+
+    plot.py out/bench/voxelize.json -o out/bench/voxelize.svg [--mesh bun_zipper,horse] [--error missing]
+
+One panel a mesh; across, the error; up, the kernel time; both logarithmic, zero error in a strip of its own at the left edge. One colour a
+method, a line along the resolution, written beside it; a sweep of an option is dashed. Native lines are points. At each resolution the
+Pareto front, what nothing else beats in both, is a solid dark line.
+"""
+
+import argparse
+import math
+
+import records
+
+try:
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    from matplotlib.lines import Line2D
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+except ImportError as error:
+    raise SystemExit("plot.py: matplotlib is missing (third_party/install plot), or this is not the Python it was installed for") from error
+
+# Okabe & Ito 2008: told apart by colour-blind readers too.
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
+NATIVE_COLOURS = ("#555555", "#999999")
+MARKERS = ("o", "s", "D", "^", "v", "P")
+ERROR_TEXT = {
+    "missing": "missing voxels, share of all touched cells",
+    "missingThin": "missing voxels, share of the thin surface",
+    "extra": "extra voxels, share of all touched cells",
+}
+
+
+def percent(value):
+    return f"{100 * value:g} %"
+
+
+def front(points, error):
+    """Those that no other beats in error and time both, by rising error."""
+    best, kept = math.inf, []
+    for p in sorted(points, key=lambda p: (p.errors[error], p.kernel_ms)):
+        if p.kernel_ms < best:
+            best = p.kernel_ms
+            kept.append(p)
+    return kept
+
+
+class Across:
+    """The horizontal axis: log10 of the error, and left of all of them a strip for zero with a lane for each method that has one."""
+
+    def __init__(self, points, methods, error):
+        values = [p.errors[error] for p in points if p.errors[error] > 0]
+        # An error of one voxel in a large grid is a point far left, not the reason for empty decades.
+        self.low = math.floor(math.log10(min(values))) if values else -3
+        self.high = max(math.ceil(math.log10(max(values))), self.low + 1) if values else 0
+        self.lanes = [m for m in methods if any(p.method == m and p.errors[error] == 0 for p in points)]
+        self.strip = 0.28 * (self.high - self.low) if values else 1.0
+        self.error = error
+        self.values = values
+
+    def at(self, p):
+        value = p.errors[self.error]
+        if value > 0:
+            return math.log10(value)
+        lane = self.lanes.index(p.method)
+        return self.low - self.strip * (1 - (lane + 0.5) / len(self.lanes))
+
+    def decorate(self, axes):
+        axes.axvspan(self.low - self.strip, self.low, color="#f1f1ec", zorder=0)
+        ticks, names = [], []
+        if self.lanes:
+            ticks, names = [self.low - self.strip / 2], ["none"]
+        if self.values:
+            decades = range(self.low, self.high + 1)
+            step = max(1, math.ceil(len(decades) / 6))
+            shown = [d for d in decades if (self.high - d) % step == 0]
+            ticks += shown
+            names += [percent(10.0**d) for d in shown]
+            for decade in range(self.low, self.high):
+                for digit in range(2, 10):
+                    axes.axvline(decade + math.log10(digit), color="#eeeeee", linewidth=0.4, zorder=0)
+        axes.set_xticks(ticks)
+        axes.set_xticklabels(names)
+        axes.set_xlim(self.low - self.strip, max(self.high, self.low + 0.05) + 0.04 * (self.high - self.low))
+
+
+def draw_panel(axes, points, across, styles, error, labels, decades):
+    for method, style in styles.items():
+        mine = [p for p in points if p.method == method]
+        plain = sorted((p for p in mine if not p.option), key=lambda p: p.resolution)
+        if not plain:
+            continue
+        xs, ys = [across.at(p) for p in plain], [p.kernel_ms for p in plain]
+        native = plain[0].native
+        axes.plot(xs, ys, color=style["colour"], marker=style["marker"], markersize=5, linewidth=0 if native else 1.3,
+                  alpha=0.95, zorder=3)
+        swept = sorted((p for p in mine if p.option), key=lambda p: float(p.option.split("=")[1]))
+        if swept:
+            defaults = [p for p in plain if p.resolution == swept[0].resolution]
+            chain = sorted(swept + defaults, key=lambda p: across.at(p))
+            axes.plot([across.at(p) for p in chain], [p.kernel_ms for p in chain], color=style["colour"], marker=style["marker"],
+                      markersize=3.2, markerfacecolor="white", linewidth=0.9, linestyle="--", zorder=2)
+    resolutions = sorted({p.resolution for p in points})
+    for resolution in resolutions:
+        edge = front([p for p in points if p.resolution == resolution and not p.native and not p.option], error)
+        axes.plot([across.at(p) for p in edge], [p.kernel_ms for p in edge], color="#222222", linewidth=1.0, zorder=2.5)
+        if labels and edge:  # at the right end, which the line along the resolution leaves free
+            last = edge[-1]
+            axes.annotate(str(resolution), (across.at(last), last.kernel_ms), textcoords="offset points", xytext=(6, -3), fontsize=7,
+                          color="#222222")
+    axes.set_yscale("log")
+    if decades < 1:  # a small difference is to look small
+        low, high = min(p.kernel_ms for p in points), max(p.kernel_ms for p in points)
+        room = math.sqrt(10 * low / high)
+        axes.set_ylim(low / room, high * room)
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.yaxis.set_major_locator(LogLocator(subs=(1.0,) if decades > 2 else (1.0, 2.0, 5.0)))
+    axes.yaxis.set_minor_locator(NullLocator())
+    axes.grid(axis="y", which="major", color="#dddddd", linewidth=0.6, zorder=0)
+    axes.set_axisbelow(True)
+    across.decorate(axes)
+
+
+def main():
+    parser = argparse.ArgumentParser(description="error against kernel time")
+    parser.add_argument("files", nargs="+", help="JSON of a benchmark program or of `vitrail compare --json`")
+    parser.add_argument("-o", "--output", required=True, help="OUT.svg or OUT.png")
+    parser.add_argument("--mesh", help="only these, A,B")
+    parser.add_argument("--error", default="missing", choices=sorted(ERROR_TEXT))
+    options = parser.parse_args()
+
+    points, machine = records.read(options.files)
+    points = [p for p in points if options.error in p.errors and p.kernel_ms > 0]
+    if options.mesh:
+        points = [p for p in points if p.mesh in options.mesh.split(",")]
+    if not points:
+        raise SystemExit("plot.py: nothing to draw: no such mesh, or no such error in the file")
+    meshes = list(dict.fromkeys(p.mesh for p in points))
+    methods = list(dict.fromkeys(p.method for p in sorted(points, key=lambda p: p.native)))
+    styles, ours, natives = {}, 0, 0
+    for method in methods:
+        if method.startswith("native_"):
+            styles[method] = {"colour": NATIVE_COLOURS[natives % 2], "marker": ("x", "+")[natives % 2]}
+            natives += 1
+        else:
+            styles[method] = {"colour": COLOURS[ours % len(COLOURS)], "marker": MARKERS[ours % len(MARKERS)]}
+            ours += 1
+    several = len({p.resolution for p in points}) > 1
+    swept = sorted({p.option.split("=")[0] for p in points if p.option})
+
+    columns = min(3, len(meshes))
+    rows = math.ceil(len(meshes) / columns)
+    title, legend = 0.6, 1.9  # inches, above and on the right
+    width, height = (5.4 + legend, 4.2 + title) if len(meshes) == 1 else (3.9 * columns + legend, 3.1 * rows + title)
+    inner, upper = 1 - legend / width, 1 - title / height
+    figure, grid = plt.subplots(rows, columns, figsize=(width, height), squeeze=False, sharex=True, sharey=True, layout="constrained")
+    figure.get_layout_engine().set(rect=(0, 0, inner, upper))
+    across = Across(points, methods, options.error)
+    times = [p.kernel_ms for p in points]
+    decades = math.log10(max(times) / min(times))
+    for index, axes in enumerate(grid.flat):
+        if index >= len(meshes):
+            axes.axis("off")
+            continue
+        mine = [p for p in points if p.mesh == meshes[index]]
+        draw_panel(axes, mine, across, styles, options.error, several, decades)
+        axes.set_title(f"{meshes[index]}: {mine[0].triangles:,} triangles".replace(",", " "), fontsize=9.5)
+        axes.tick_params(labelsize=8)
+        # With panels missing from the last row, the ones above them keep their own ticks.
+        if index + columns >= len(meshes):
+            axes.tick_params(labelbottom=True)
+    figure.supxlabel(f"\N{LEFTWARDS ARROW} better    {ERROR_TEXT[options.error]}", x=inner / 2, fontsize=9.5)
+    figure.supylabel("\N{LEFTWARDS ARROW} better    kernel time, ms", y=upper / 2, fontsize=9.5)
+
+    entries = []
+    for method, style in styles.items():
+        native = method.startswith("native_")
+        text = method.replace("native_", "native: ").replace("_", " ") if native else method
+        entries.append(Line2D([], [], color=style["colour"], marker=style["marker"], linewidth=0 if native or not several else 1.3, label=text))
+    entries.append(Line2D([], [], color="#222222", linewidth=1.0, label="Pareto front" + (" of one\nresolution (number)" if several else "")))
+    for option in swept:
+        entries.append(Line2D([], [], color="#888888", linewidth=0.9, linestyle="--", marker="o", markersize=3.2, markerfacecolor="white",
+                              label=f"{option} varied"))
+    figure.legend(handles=entries, loc="upper left", bbox_to_anchor=(inner, upper), fontsize=8.5, frameon=False)
+    resolution = "" if several else f"longest axis {points[0].resolution} voxels; "
+    figure.text(0.12 / width, 1 - 0.1 / height, "Surface voxelization: error against time", va="top", fontsize=11.5, weight="bold")
+    figure.text(0.12 / width, 1 - 0.36 / height, resolution + records.machine_text(machine), va="top", fontsize=8, color="#555555")
+    figure.savefig(options.output, dpi=150, metadata={"Date": None} if options.output.endswith(".svg") else None)
+
+
+if __name__ == "__main__":
+    main()

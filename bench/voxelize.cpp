@@ -1,0 +1,266 @@
+// bench/voxelize.cpp: the family surfaceVoxels: every method of methods.h and the native lines, over meshes and resolutions, in turns. A
+// benchmark is <mesh>/<resolution>/<method>[/<option>=<value>]; its time is kernelMs (of a native line the call), and in the same record are
+// wallMs and the errors against the truth. Meshes: generated ones, and real ones where VITRAIL_DATA names a folder of them.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <vitrail/core/error.h>
+#include <vitrail/io/load.h>
+#include <vitrail/metrics/voxels.h>
+#include <vitrail/metrics/watertight.h>
+#include <vitrail/reference/truth.h>
+#include <vitrail/scene/shapes.h>
+#include <vitrail/voxelize/voxelize.h>
+
+#include "cli/record.h"
+#include "native/edge_runs.h"
+#include "native/separating_axis.h"
+
+namespace {
+
+using namespace vitrail;
+
+constexpr std::uint32_t kResolutions[] = {64, 128, 256, 512};
+/// Where a method's options are swept; elsewhere they have their defaults.
+constexpr std::uint32_t kSweepResolution = 256;
+
+struct Input {
+    std::string name;
+    std::function<Mesh()> make;
+};
+
+std::vector<Input> inputs() {
+    std::vector<Input> all;
+    const auto shape = [&](const char* name, std::vector<std::string> parameters) {
+        all.push_back({name, [=] { return makeShape(name, parameters); }});
+    };
+    shape("torus", {});
+    shape("gyroid", {"cells=4", "resolution=160"});
+    shape("tree", {});
+    shape("terrain", {"cells=512"});
+    if (const char* folder = std::getenv("VITRAIL_DATA"))
+        for (const char* file : {"teapot.ply", "bun_zipper.ply", "horse.ply", "turbineblade.ply", "dragon_vrip_res2.ply"})
+            if (const auto path = std::filesystem::path(folder) / "meshes" / file; std::filesystem::exists(path))
+                all.push_back({path.stem().string(), [path] { return load(path); }});
+    return all;
+}
+
+double milliseconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double, std::milli>(d).count(); }
+
+/// The device, and what is made when first needed and kept: meshes on both sides, and the errors of every benchmark.
+class Bench {
+public:
+    Bench() : device_(Device::select()), queue_(device_) {}
+
+    struct Loaded {
+        Mesh mesh;
+        DeviceMesh onDevice;
+    };
+    using MakeBits = std::function<VoxelBits(Bench&, const Loaded&, const Grid&)>;
+
+    Queue& queue() { return queue_; }
+    const DeviceInfo& deviceInfo() const { return device_.info(); }
+    unsigned threads() const { return std::max(1u, device_.info().computeUnits); }
+
+    const Loaded& mesh(const Input& input) {
+        auto found = meshes_.find(input.name);
+        if (found == meshes_.end()) {
+            Mesh mesh = input.make();
+            DeviceMesh onDevice(queue_, mesh);
+            found = meshes_.emplace(input.name, Loaded{std::move(mesh), std::move(onDevice)}).first;
+        }
+        return found->second;
+    }
+    void judgeLater(const std::string& group, const std::string& name, MakeBits bits) { groups_[group].push_back({name, std::move(bits)}); }
+
+    /// The errors of benchmark `name` as counters. The first question about a group (a mesh on a grid) answers for all of it: benchmarks
+    /// come in random order, and the truth takes longer than they do.
+    const benchmark::UserCounters& errors(const std::string& group, const std::string& name, const Loaded& loaded, const Grid& grid) {
+        if (const auto found = errors_.find(name); found != errors_.end()) return found->second;
+        const reference::Truth touched = reference::conservative(loaded.mesh, grid), thin = reference::thin(loaded.mesh, grid);
+        for (const auto& [member, bits] : groups_.at(group)) {
+            const VoxelBits result = bits(*this, loaded, grid);
+            const VoxelDifference difference = compareVoxels(result, touched.certain, touched.possible);
+            const Watertight tight = checkWatertight(result, thin.certain);
+            benchmark::UserCounters& counters = errors_[member];
+            counters["missing"] = difference.missingShare();
+            counters["extra"] = difference.extraShare();
+            counters["missingThin"] = compareVoxels(result, thin.certain, thin.possible).missingShare();
+            counters["leaks"] = static_cast<double>(tight.leaks);
+            counters["watertight"] = tight.holds();
+            counters["occupied"] = static_cast<double>(difference.result);
+        }
+        return errors_.at(name);
+    }
+
+private:
+    struct Member {
+        std::string name;
+        MakeBits bits;
+    };
+    Device device_;
+    Queue queue_;
+    std::map<std::string, Loaded> meshes_;
+    std::map<std::string, std::vector<Member>> groups_;
+    std::map<std::string, benchmark::UserCounters> errors_;
+};
+
+/// One benchmark: who runs on what.
+struct Case {
+    std::string name, group;
+    const Input& input;
+    std::uint32_t resolution;
+};
+
+/// What both kinds of benchmark count beside their time.
+void addCounters(benchmark::State& state, Bench& bench, const Case& one, const Bench::Loaded& loaded, const Grid& grid, double wallMs,
+                 double bytes) {
+    const benchmark::UserCounters& errors = bench.errors(one.group, one.name, loaded, grid);
+    state.counters.insert(errors.begin(), errors.end());
+    state.counters["triangles"] = static_cast<double>(loaded.mesh.triangleCount());
+    state.counters["resolution"] = one.resolution;
+    state.counters["bytesPerVoxel"] = bytes / std::max(1.0, errors.at("occupied").value);
+    state.counters["wallMs"] = wallMs / double(state.iterations());
+}
+
+void benchMethod(benchmark::State& state, Bench& bench, const Case& one, const Voxelizer& method) {
+    const Bench::Loaded& loaded = bench.mesh(one.input);
+    const Grid grid = Grid::fit(loaded.mesh.bounds(), one.resolution);
+    Queue& queue = bench.queue();
+    voxelize(queue, loaded.onDevice, grid, method);  // builds the program and touches the memory
+    queue.finish();
+    double wallMs = 0;
+    for (auto _ : state) {
+        const Voxels voxels = voxelize(queue, loaded.onDevice, grid, method);
+        queue.finish();
+        const VoxelReport& report = voxels.report();
+        state.SetIterationTime(report.kernelMs * 1e-3);
+        wallMs += report.wallMs;
+    }
+    addCounters(state, bench, one, loaded, grid, wallMs, double(estimate(loaded.onDevice, grid, method) + loaded.onDevice.bytes()));
+}
+
+using NativeLine = void (*)(std::span<const float>, std::span<const std::uint32_t>, const native::Grid&, unsigned, native::Bits&);
+
+void runNative(NativeLine line, Bench& bench, const Mesh& mesh, const Grid& grid, native::Bits& bits) {
+    const Uint3 size = grid.size();
+    const Float3 origin = grid.origin();
+    line({&mesh.positions[0].x, mesh.positions.size() * 3}, mesh.indices, {{origin.x, origin.y, origin.z}, grid.edge(), {size.x, size.y, size.z}},
+         bench.threads(), bits);
+}
+
+void benchNative(benchmark::State& state, Bench& bench, const Case& one, NativeLine line) {
+    const Bench::Loaded& loaded = bench.mesh(one.input);
+    const Grid grid = Grid::fit(loaded.mesh.bounds(), one.resolution);
+    native::Bits bits;
+    runNative(line, bench, loaded.mesh, grid, bits);  // touches the memory
+    double wallMs = 0;
+    for (auto _ : state) {
+        const auto start = std::chrono::steady_clock::now();
+        runNative(line, bench, loaded.mesh, grid, bits);
+        const double ms = milliseconds(std::chrono::steady_clock::now() - start);
+        state.SetIterationTime(ms * 1e-3);
+        wallMs += ms;
+    }
+    const double bytes = double(bits.words.size()) * 4 + double(loaded.mesh.positions.size()) * 12 + double(loaded.mesh.indices.size()) * 4;
+    addCounters(state, bench, one, loaded, grid, wallMs, bytes);
+}
+
+VoxelBits nativeBits(NativeLine line, Bench& bench, const Bench::Loaded& loaded, const Grid& grid) {
+    native::Bits bits;
+    runNative(line, bench, loaded.mesh, grid, bits);
+    VoxelBits same(grid);  // of the same layout (native.h)
+    std::copy(bits.words.begin(), bits.words.end(), same.words.begin());
+    return same;
+}
+
+void add(const std::string& name, std::function<void(benchmark::State&)> run) {
+    benchmark::RegisterBenchmark(name.c_str(), [run = std::move(run)](benchmark::State& state) {
+        try {
+            run(state);
+        } catch (const std::exception& error) {
+            state.SkipWithError(error.what());
+        }
+    })->UseManualTime()->Unit(benchmark::kMillisecond);
+}
+
+/// The method's defaults and, where options are swept, each option at powers of two of its default.
+std::vector<std::string> optionChoices(const Method& method, std::uint32_t resolution) {
+    std::vector<std::string> choices{""};
+    if (resolution != kSweepResolution) return choices;
+    for (const MethodOption& option : method.options)
+        for (const double factor : {0.5, 2.0, 4.0, 8.0})
+            if (const double value = option.byDefault * factor; !option.name.empty() && value >= option.least && value <= option.most) {
+                char text[64];
+                std::snprintf(text, sizeof text, "%s=%g", std::string(option.name).c_str(), value);
+                choices.emplace_back(text);
+            }
+    return choices;
+}
+
+void addAll(Bench& bench, const std::vector<Input>& meshes) {
+    for (const Input& input : meshes) {
+        for (const std::uint32_t resolution : kResolutions) {
+            const std::string group = input.name + "/" + std::to_string(resolution) + "/";
+            for (const Method& method : methods()) {
+                if (method.family != Family::surfaceVoxels) continue;
+                for (const std::string& choice : optionChoices(method, resolution)) {
+                    const Case one{group + std::string(method.name) + (choice.empty() ? "" : "/" + choice), group, input, resolution};
+                    const Voxelizer voxelizer =
+                        voxelizerByName(method.name, std::span(&choice, choice.empty() ? 0 : 1));
+                    bench.judgeLater(group, one.name, [voxelizer](Bench& b, const Bench::Loaded& loaded, const Grid& grid) {
+                        return voxelize(b.queue(), loaded.onDevice, grid, voxelizer).host();
+                    });
+                    add(one.name, [&bench, one, voxelizer](benchmark::State& state) { benchMethod(state, bench, one, voxelizer); });
+                }
+            }
+            const std::pair<const char*, NativeLine> lines[] = {{"native_separating_axis", native::voxelizeSeparatingAxis},
+                                                                {"native_edge_runs", native::voxelizeEdgeRuns}};
+            for (const auto& [name, line] : lines) {
+                const Case one{group + name, group, input, resolution};
+                bench.judgeLater(group, one.name, [line = line](Bench& b, const Bench::Loaded& loaded, const Grid& grid) {
+                    return nativeBits(line, b, loaded, grid);
+                });
+                add(one.name, [&bench, one, line = line](benchmark::State& state) { benchNative(state, bench, one, line); });
+            }
+        }
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    // Both sides in turns, medians of five, unless told otherwise.
+    std::vector<std::string> words{argv[0], "--benchmark_repetitions=5", "--benchmark_enable_random_interleaving=true",
+                                   "--benchmark_report_aggregates_only=true", "--benchmark_min_time=0.1"};
+    words.insert(words.end(), argv + 1, argv + argc);
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    int count = static_cast<int>(arguments.size());
+    benchmark::Initialize(&count, arguments.data());
+    if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 2;
+    try {
+        Bench bench;
+        const std::vector<Input> meshes = inputs();
+        addAll(bench, meshes);
+        const cli::Json machine = cli::machineRecord(bench.deviceInfo());
+        for (const auto& [key, value] : machine.items())
+            benchmark::AddCustomContext(key, value.is_string() ? value.get<std::string>() : value.dump());
+        benchmark::RunSpecifiedBenchmarks();
+        benchmark::Shutdown();
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        return 1;
+    }
+    return 0;
+}

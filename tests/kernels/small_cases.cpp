@@ -1,0 +1,61 @@
+// Runs the kernels on very small cases, for Oclgrind: it finds accesses out of bounds, races and misused calls, some thousand times slower
+// than a device. Prints what ran; the numbers are tested elsewhere.
+#include <vitrail/core/error.h>
+#include <vitrail/light/boxes.h>
+#include <vitrail/light/glass.h>
+#include <vitrail/vitrail.h>
+
+#include <cstdio>
+
+#include "tests/support/cases.h"
+#include "tests/support/closed.h"
+#include "tests/support/device.h"
+
+int main() {
+    using namespace vitrail;
+    try {
+        Queue& queue = test::queue();
+        std::printf("%s\n", test::device().info().name.c_str());
+        const Uint3 size(9, 10, 34);
+        Mesh mesh = test::soup(91, 12, size, 4);
+        test::addTriangle(mesh, {-3, 1, 1}, {90, 2, 30}, {1, 95, 3});    // over the upper faces
+        test::addTriangle(mesh, {2, 2, 2}, {2, 2, 2}, {5, 2, 2});        // without area
+        test::addTriangle(mesh, {50, 50, 50}, {51, 50, 50}, {50, 51, 50});
+        // For the task lists: over more than 1024 columns, with an edge of more than 64 cells.
+        const Grid wide = Grid::box(Float3(0), 1.0f, Uint3(40, 40, 8));
+        const Mesh large = test::triangles({{0.2f, 0.3f, 1}, {39, 1, 6}, {2, 38, 3}}), longer = test::triangles({{-60, 20, 1}, {8, 22, 4}, {8, 22.5f, 4}});
+        for (const Precision precision : {Precision::best, Precision::single}) {
+            const test::WithPrecision set(queue, precision);
+            for (const Method& row : methods()) {
+                if (row.family != Family::surfaceVoxels) continue;
+                const Voxelizer method = voxelizerByName(row.name, {}, Channel::count | Channel::normal | Channel::material);
+                std::vector<Grid> grids{Grid::box(Float3(0), 1.0f, size)};
+                if (row.cameraGrids) grids.push_back(test::cameraGrids({Float3(0), Float3(size)}, Uint3(7, 6, 5))[2]);
+                for (const Grid& grid : grids) {
+                    const Voxels voxels = voxelize(queue, mesh, grid, method);
+                    (void)voxels.mip();
+                    std::printf("%s %s: %llu voxels\n", voxels.report().method.c_str(), grid.text().c_str(),
+                                static_cast<unsigned long long>(voxels.occupied()));
+                }
+                const Voxels voxels = voxelize(queue, row.name == "points" ? longer : large, wide, method);
+                std::printf("%s, large: %llu voxels\n", voxels.report().method.c_str(), static_cast<unsigned long long>(voxels.occupied()));
+            }
+        }
+
+        Scene scene;
+        const std::vector<std::string> coarse{"around=8", "rings=4"};
+        scene.mesh = withSmoothNormals(makeShape("sphere", coarse));
+        scene.materials = {defaultGlass(scene.mesh.bounds())};
+        const Camera camera = Camera::around(scene.mesh.bounds(), 30, 20, 4, 3);
+        (void)shade(queue, scene, camera, Glass{.method = {.resolution = 8}, .samples = 1}).picture();
+        (void)shade(queue, scene, camera, Shadow{.method = {.resolution = 8}, .samples = 1}).picture();
+        const Grid grid = Grid::fit(scene.mesh.bounds(), 8);
+        const Voxels voxels = voxelize(queue, scene.mesh, grid, Conservative{.channels = Channel::count | Channel::normal});
+        (void)shade(queue, voxels, camera, Boxes{.samples = 1}).picture();
+        (void)shade(queue, voxels, camera, Boxes{.colour = BoxColour::count, .samples = 1}).picture();
+        std::printf("pictures\n");
+    } catch (const Error& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        return 1;
+    }
+}

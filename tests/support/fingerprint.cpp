@@ -1,0 +1,50 @@
+#include "tests/support/fingerprint.h"
+
+#include <vitrail/scene/shapes.h>
+#include <vitrail/voxelize/voxelize.h>
+
+#include "tests/support/cases.h"
+#include "tests/support/device.h"
+
+namespace vitrail::test {
+
+namespace {
+
+std::string hashOf(const std::vector<std::uint32_t>& values) {
+    std::uint64_t hash = 14695981039346656037ull;
+    for (const std::uint32_t v : values) hash = (hash ^ v) * 1099511628211ull;
+    char text[24];
+    std::snprintf(text, sizeof text, " %016llx", static_cast<unsigned long long>(hash));
+    return text;
+}
+
+}  // namespace
+
+Mesh fingerprintMesh() {
+    const Uint3 size(100, 90, 80);
+    Mesh mesh = soup(51, 3000, size, 3);
+    mesh.append(soup(52, 150, size, 60));
+    return mesh;
+}
+
+std::string fingerprint(Queue& queue, const Mesh& mesh) {
+    const Bounds bounds = mesh.bounds();
+    std::string lines;
+    for (const Precision precision : {Precision::best, Precision::single}) {
+        const WithPrecision set(queue, precision);
+        for (const Method& row : methods()) {
+            if (row.family != Family::surfaceVoxels) continue;
+            std::vector<Grid> grids = cameraGrids(bounds, {70, 60, 50});
+            if (!row.cameraGrids) grids.erase(grids.begin() + 1, grids.end());
+            grids.push_back(Grid::fit(bounds, 100));
+            for (const Grid& grid : grids) {
+                const Voxels v = voxelize(queue, mesh, grid, voxelizerByName(row.name, {}, Channel::count | Channel::normal | Channel::material));
+                lines += std::string(row.name) + (precision == Precision::single ? " single " : " ") + grid.text() + ":" + hashOf(v.host().words) +
+                         hashOf(v.counts()) + hashOf(v.normalBuffer().read(queue)) + hashOf(v.materials()) + "\n";
+            }
+        }
+    }
+    return lines;
+}
+
+}  // namespace vitrail::test

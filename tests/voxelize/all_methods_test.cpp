@@ -1,0 +1,272 @@
+// What every row of the table of methods keeps.
+#include <gtest/gtest.h>
+#include <vitrail/core/error.h>
+#include <vitrail/reference/truth.h>
+#include <vitrail/voxelize/voxelize.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "tests/support/cases.h"
+#include "tests/support/closed.h"
+#include "tests/support/device.h"
+#include "tests/support/tessellator.h"
+
+namespace vitrail {
+namespace {
+
+using test::queue;
+
+constexpr Channel kAll = Channel::count | Channel::normal | Channel::material;
+
+class EveryVoxelizer : public ::testing::TestWithParam<const char*> {
+protected:
+    Voxelizer method(Channel channels = Channel::none) const { return voxelizerByName(GetParam(), {}, channels); }
+};
+INSTANTIATE_TEST_SUITE_P(Methods, EveryVoxelizer, ::testing::Values("conservative", "sampled", "points"),
+                         [](const auto& info) { return std::string(info.param); });
+
+TEST(Methods, AllAreTested) {
+    for (const Method& row : methods())
+        if (row.family == Family::surfaceVoxels) {
+            EXPECT_TRUE(row.name == "conservative" || row.name == "sampled" || row.name == "points") << row.name;
+        }
+}
+
+using Cell = std::array<unsigned, 3>;
+/// Triangles of a voxel and how often each counts.
+using Fragments = std::map<Cell, std::map<std::uint32_t, unsigned>>;
+
+Fragments fragmentsOf(const Mesh& mesh, const Grid& grid, std::string_view method) {
+    Fragments all;
+    const Uint3 size = grid.size();
+    for (std::uint32_t t = 0; t < mesh.triangleCount(); ++t) {
+        const std::array<Float3, 3> p{mesh.positions[mesh.indices[3 * t]], mesh.positions[mesh.indices[3 * t + 1]],
+                                      mesh.positions[mesh.indices[3 * t + 2]]};
+        if (method == "points") {
+            for (const Double3& q : test::pointsOf({grid.toVoxel(p[0]), grid.toVoxel(p[1]), grid.toVoxel(p[2])}, 1))
+                if (q.x >= 0 && q.y >= 0 && q.z >= 0 && q.x < size.x && q.y < size.y && q.z < size.z)
+                    ++all[{unsigned(q.x), unsigned(q.y), unsigned(q.z)}][t];
+            continue;
+        }
+        const Mesh one = test::triangles({p[0], p[1], p[2]});
+        const VoxelBits bits = method == "sampled" ? reference::sampled(one, grid) : reference::conservative(one, grid).possible;
+        for (unsigned z = 0; z < size.z; ++z)
+            for (unsigned y = 0; y < size.y; ++y)
+                for (unsigned x = 0; x < size.x; ++x)
+                    if (bits.at(x, y, z)) all[{x, y, z}][t] = 1;
+    }
+    return all;
+}
+
+// Random corners, so that no verdict is a tie.
+TEST_P(EveryVoxelizer, ChannelsCombineFragments) {
+    const Uint3 size(16, 20, 40);
+    const Grid grid = Grid::box(Float3(0), 1.0f, size);
+    const Mesh mesh = test::soup(61, 150, size, 9);
+    Fragments expected = fragmentsOf(mesh, grid, GetParam());
+    const Voxels got = voxelize(queue(), mesh, grid, method(kAll));
+    ASSERT_EQ(got.occupied(), expected.size());
+    EXPECT_EQ(got.report().occupied, expected.size());
+    double worst = 0;
+    got.forEach([&](Uint3 c, std::uint64_t index) {
+        std::uint32_t count = 0, lowest = 0xffffffffu;
+        Double3 sum(0);
+        for (const auto& [t, times] : expected[{c.x, c.y, c.z}]) {
+            count += times;
+            lowest = std::min(lowest, mesh.materials[t]);
+            const Double3 a(mesh.positions[3 * t]), b(mesh.positions[3 * t + 1]), d(mesh.positions[3 * t + 2]);
+            sum += glm::normalize(glm::cross(b - a, d - a)) * double(times);
+        }
+        EXPECT_EQ(got.counts()[index], count);
+        EXPECT_EQ(got.materials()[index], lowest);
+        // 2^-24 a component and fragment, which turn a sum that nearly vanishes.
+        if (glm::length(sum) > 0.01 * count)
+            worst = std::max(worst, std::acos(std::min(1.0, glm::dot(glm::normalize(sum), glm::normalize(Double3(got.normals()[index]))))));
+    });
+    // Octahedral coordinates of 16 bits: 0.004 degrees; a sum of length 0.01 turns by 2^-24 sqrt(3) / 0.01 rad = 0.0006 degrees.
+    EXPECT_LE(worst * 180 / 3.14159265358979, 0.0046);
+}
+
+// A second call of the same size creates nothing and, for a mesh on the device, uploads nothing.
+TEST_P(EveryVoxelizer, ASecondCallAllocatesAndBuildsNothing) {
+    const Mesh mesh = test::closedTorus(Float3(0), 5, 2, Float3(1, 2, 3), 24, 12);
+    Device device = Device::select();
+    Queue own(device);
+    const DeviceMesh onDevice(own, mesh);
+    const Grid grid = Grid::fit(mesh.bounds(), 50);
+    const auto run = [&] {
+        const Voxels v = voxelize(own, onDevice, grid, method(kAll));
+        return v.normalBuffer().read(own);
+    };
+    const std::vector<std::uint32_t> first = run();
+    const Counters before = device.counters();
+    EXPECT_EQ(run(), first);
+    const Counters after = device.counters();
+    EXPECT_EQ(after.allocations, before.allocations);
+    EXPECT_EQ(after.programBuilds, before.programBuilds);
+    EXPECT_EQ(after.programLoads, before.programLoads);
+    EXPECT_EQ(after.kernelsCreated, before.kernelsCreated);
+    EXPECT_EQ(after.uploads, before.uploads);
+    EXPECT_GT(after.launches, before.launches);
+}
+
+TEST_P(EveryVoxelizer, StaysWithinItsEstimate) {
+    const Mesh mesh = test::closedTorus(Float3(0), 5, 2, Float3(1, 2, 3), 60, 30);
+    const Grid grid = Grid::fit(mesh.bounds(), 150);
+    for (const Channel channels : {Channel::none, kAll}) {
+        Device device = Device::select();
+        Queue own(device);
+        const Voxels v = voxelize(own, mesh, grid, method(channels));
+        (void)v.host();
+        // Buffers are rounded up to 256 bytes each.
+        EXPECT_LE(device.counters().peakDeviceBytes, estimate(mesh, grid, method(channels)) + 16 * 256);
+    }
+}
+
+TEST_P(EveryVoxelizer, RefusesBeforeMemoryIsTaken) {
+    const Mesh mesh = test::octahedron(Float3(0), 1);
+    Device device = Device::select();
+    device.setMemoryLimit(2 << 20);
+    Queue own(device);
+    for (const unsigned longest : {512u, 20000u}) {
+        try {
+            (void)voxelize(own, mesh, Grid::fit(mesh.bounds(), longest), method());
+            ADD_FAILURE() << "no error";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::outOfMemory);
+            EXPECT_NE(std::string(error.what()).find("or fewer"), std::string::npos) << error.what();
+        }
+        EXPECT_EQ(device.counters().allocations, 0u);
+        EXPECT_EQ(device.counters().uploads, 0u);
+    }
+    EXPECT_GT(voxelize(own, mesh, Grid::fit(mesh.bounds(), 100), method()).occupied(), 0u);
+}
+
+TEST_P(EveryVoxelizer, CanBeCancelledAndGoesOn) {
+    const Mesh mesh = test::closedTorus(Float3(0), 5, 2, Float3(1, 2, 3), 24, 12);
+    const Grid grid = Grid::fit(mesh.bounds(), 40);
+    Queue own(test::device());
+    const std::vector<std::uint32_t> before = voxelize(own, mesh, grid, method(kAll)).host().words;
+    unsigned steps = 0;
+    own.setProgress([&](const Progress& p) {
+        EXPECT_GE(p.fraction, 0);
+        EXPECT_LE(p.fraction, 1);
+        ++steps;
+        return true;
+    });
+    (void)voxelize(own, mesh, grid, method(kAll));
+    ASSERT_GE(steps, 3u);
+    for (unsigned stop = 1; stop <= steps; ++stop) {
+        unsigned at = 0;
+        own.setProgress([&](const Progress&) { return ++at < stop; });
+        try {
+            (void)voxelize(own, mesh, grid, method(kAll));
+            ADD_FAILURE() << "not cancelled at step " << stop;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::cancelled);
+        }
+    }
+    own.setProgress({});
+    EXPECT_EQ(voxelize(own, mesh, grid, method(kAll)).host().words, before);
+}
+
+// More blocks of big triangles than the task list holds (64 each, 65536 in all): those that find no place are done at once, to the same voxels.
+TEST_P(EveryVoxelizer, AFullTaskListChangesNothing) {
+    const Grid grid = Grid::box(Float3(0), 1.0f, Uint3(256, 256, 16));
+    test::Random random(71);
+    std::vector<Mesh> parts(3);
+    Mesh whole;
+    for (unsigned i = 0; i < 1200; ++i) {
+        const Float3 from(random.in(-5, 0), random.in(-5, 0), random.in(0, 16)), to = from + Float3(265, 265, random.in(-2, 2));
+        const Float3 side = from + Float3(random.in(0, 2), 0, 0.2f);
+        test::addTriangle(parts[i / 400], from, to, side);
+        test::addTriangle(whole, from, to, side);
+    }
+    VoxelBits expected(grid);
+    for (const Mesh& part : parts) {
+        const Voxels v = voxelize(queue(), part, grid, method());
+        for (std::size_t w = 0; w < expected.words.size(); ++w) expected.words[w] |= v.host().words[w];
+    }
+    EXPECT_GT(expected.occupied(), 1000u);
+    EXPECT_EQ(voxelize(queue(), whole, grid, method()).host().words, expected.words);
+}
+
+// Buffers of the caller's are not checked on the host: what cannot be used is skipped and counted.
+TEST_P(EveryVoxelizer, CountsWhatItCannotUse) {
+    const float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
+    const std::vector<Float3> positions{{1.2f, 1.2f, 1.5f}, {6.3f, 1.2f, 1.5f}, {1.2f, 6.3f, 1.5f}, {kNan, 0, 0}, {0, kInfinity, 0}, {90, 90, 90},
+                                        {95, 90, 90},       {90, 95, 90}};
+    const std::vector<std::uint32_t> indices{0, 1, 2,  0, 1, 3,  4, 1, 2,  0, 1, 8,  0, 0xffffffffu, 2,  5, 6, 7,  0, 1, 1,  2, 2, 2};
+    Buffer<float> p = queue().workspace().take<float>(3 * positions.size(), "positions");
+    p.write(queue(), {&positions[0].x, 3 * positions.size()});
+    Buffer<std::uint32_t> i = queue().workspace().take<std::uint32_t>(indices.size(), "indices");
+    i.write(queue(), indices);
+    const DeviceMesh mesh(std::move(p), std::move(i), {}, {}, {Float3(0), Float3(95)});
+    const Grid grid = Grid::box(Float3(0), 1.0f, Uint3(8));
+    const Voxels got = voxelize(queue(), mesh, grid, method(kAll));
+    EXPECT_EQ(got.report().triangles, 8u);
+    EXPECT_EQ(got.report().skippedTriangles, 4u);
+    EXPECT_EQ(got.report().outsideTriangles, 1u);
+    EXPECT_EQ(got.report().degenerateTriangles, 2u);
+    EXPECT_GT(got.occupied(), 0u);
+    got.forEach([](Uint3 c, std::uint64_t) { EXPECT_EQ(c.z, 1u); });
+}
+
+TEST_P(EveryVoxelizer, RefusesAnEmptyMesh) {
+    try {
+        (void)voxelize(queue(), Mesh(), Grid::box(Float3(0), 1.0f, Uint3(8)), method());
+        ADD_FAILURE() << "no error";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::badInput);
+    }
+}
+
+TEST_P(EveryVoxelizer, ReportsItself) {
+    const Mesh mesh = test::octahedron(Float3(0), 1);
+    const Grid grid = Grid::fit(mesh.bounds(), 20);
+    const Voxels v = voxelize(queue(), mesh, grid, method());
+    const VoxelReport& report = v.report();
+    EXPECT_EQ(report.method, GetParam());
+    EXPECT_EQ(report.triangles, 8u);
+    EXPECT_EQ(report.grid, grid.size());
+    EXPECT_EQ(report.occupied, v.host().occupied());
+    EXPECT_GT(report.kernelMs, 0);
+    EXPECT_GE(report.wallMs, report.kernelMs);
+    EXPECT_FALSE(report.singlePrecision);
+    EXPECT_FALSE(report.device.empty());
+}
+
+TEST(Methods, OptionsAreCheckedNeverClamped) {
+    const Mesh mesh = test::octahedron(Float3(0), 1);
+    for (const float gamma : {0.2f, 16.5f, -1.0f, std::numeric_limits<float>::quiet_NaN()}) try {
+            (void)voxelize(queue(), mesh, Grid::fit(mesh.bounds(), 8), Points{.safetyFactor = gamma});
+            ADD_FAILURE() << "no error for " << gamma;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::badOption);
+        }
+    const Voxels v = voxelize(queue(), mesh, Grid::fit(mesh.bounds(), 8), Points{.safetyFactor = 16});
+    EXPECT_EQ(v.report().options, "safetyFactor=16");
+}
+
+// Column after column, conservative holds what the others mark.
+TEST(Methods, ConservativeCoversTheOthers) {
+    for (const test::Case& one : test::smallShapes()) {
+        const Grid grid = Grid::fit(one.mesh.bounds(), 60);
+        const Voxels all = voxelize(queue(), one.mesh, grid, Conservative{});
+        const reference::Truth truth = reference::conservative(one.mesh, grid);
+        for (const Voxelizer& other : {Voxelizer(Sampled{}), Voxelizer(Points{.safetyFactor = 3})}) {
+            const Voxels some = voxelize(queue(), one.mesh, grid, other);
+            std::uint64_t beyond = 0;
+            for (std::size_t w = 0; w < some.host().words.size(); ++w)
+                beyond += static_cast<std::uint64_t>(
+                    __builtin_popcount(some.host().words[w] & ~all.host().words[w] & ~(truth.possible.words[w] & ~truth.certain.words[w])));
+            EXPECT_EQ(beyond, 0u) << one.name;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace vitrail

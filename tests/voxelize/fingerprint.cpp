@@ -1,0 +1,10 @@
+// Prints the device's compute units, then the fingerprint: run by same_bits_test.cpp with another number of threads.
+#include <cstdio>
+
+#include "tests/support/device.h"
+#include "tests/support/fingerprint.h"
+
+int main() {
+    using namespace vitrail;
+    std::printf("%u\n%s", test::device().info().computeUnits, test::fingerprint(test::queue(), test::fingerprintMesh()).c_str());
+}

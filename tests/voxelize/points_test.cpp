@@ -1,0 +1,183 @@
+// points: the tessellator's pattern, point by point, and what the scattered points miss.
+#include <gtest/gtest.h>
+#include <vitrail/core/error.h>
+#include <vitrail/metrics/voxels.h>
+#include <vitrail/reference/truth.h>
+#include <vitrail/voxelize/points.h>
+#include <vitrail/voxelize/sampled.h>
+
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "tests/support/cases.h"
+#include "tests/support/closed.h"
+#include "tests/support/data.h"
+#include "tests/support/device.h"
+#include "tests/support/plain_files.h"
+#include "tests/support/tessellator.h"
+
+namespace vitrail {
+namespace {
+
+using test::queue;
+
+/// Twice the area in weights, of a whole of 1: the determinant.
+double areaOf(const test::MicroTriangle& t) { return glm::dot(t[0], glm::cross(t[1], t[2])); }
+
+std::uint64_t formula(std::array<int, 3> edges, int inside) {
+    if (inside == 1 && edges == std::array<int, 3>{1, 1, 1}) return 1;
+    const std::uint64_t m = static_cast<std::uint64_t>(std::max(inside, 2)) - 2;
+    return static_cast<std::uint64_t>(edges[0] + edges[1] + edges[2]) + 3 * m + 3 * m * m / 2;
+}
+
+TEST(Tessellator, FillsTheTriangleOnce) {
+    test::Random random(31);
+    for (int round = 0; round < 600; ++round) {
+        std::array<int, 3> edges;
+        const int most = round < 300 ? 6 : 64;
+        for (int& e : edges) e = 1 + static_cast<int>(random.bits() % most);
+        const int inside = 1 + static_cast<int>(random.bits() % most);
+        const auto pattern = test::tessellate(edges, inside);
+        ASSERT_EQ(pattern.size(), formula(edges, inside)) << edges[0] << " " << edges[1] << " " << edges[2] << " inside " << inside;
+        double area = 0;
+        for (const test::MicroTriangle& t : pattern) {
+            ASSERT_GT(std::abs(areaOf(t)), 0);
+            area += std::abs(areaOf(t));
+        }
+        ASSERT_NEAR(area, 1, 1e-12);
+    }
+    // Uniform factors: 3 n^2 / 2, of which Fei's 5000 to 6000 at 63 are an instance.
+    EXPECT_EQ(test::tessellate({63, 63, 63}, 63).size(), 5953u);
+}
+
+using Counts = std::map<std::array<unsigned, 3>, std::uint64_t>;
+
+Counts countsOf(const Voxels& voxels) {
+    Counts counts;
+    voxels.forEach([&](Uint3 c, std::uint64_t index) { counts[{c.x, c.y, c.z}] = voxels.counts()[index]; });
+    return counts;
+}
+
+Counts expectedCounts(const Mesh& mesh, const Grid& grid, double safetyFactor) {
+    Counts counts;
+    const Uint3 size = grid.size();
+    for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
+        std::array<Double3, 3> corners;
+        for (int k = 0; k < 3; ++k) corners[k] = grid.toVoxel(mesh.positions[mesh.indices[3 * t + k]]);
+        for (const Double3& p : test::pointsOf(corners, safetyFactor))
+            if (p.x >= 0 && p.y >= 0 && p.z >= 0 && p.x <= size.x && p.y <= size.y && p.z <= size.z)
+                ++counts[{std::min(unsigned(p.x), size.x - 1), std::min(unsigned(p.y), size.y - 1), std::min(unsigned(p.z), size.z - 1)}];
+    }
+    return counts;
+}
+
+// The device enumerates what the pattern has, voxel by voxel: triangles below a cell, of few cells, above 64 cells (halved), partly outside.
+TEST(Points, AreTheCentroidsOfTheTessellation) {
+    const Uint3 size(40, 33, 70);
+    const Grid box = Grid::box(Float3(0), 1.0f, size), ortho = test::cameraGrids({Float3(0), Float3(size)}, size)[0];
+    struct Run {
+        unsigned triangles;
+        float reach, safetyFactor;
+    };
+    for (const Run& run : {Run{300, 0.7f, 1}, Run{300, 3, 1}, Run{100, 20, 1}, Run{100, 5, 2.5f}, Run{60, 12, 0.3f}, Run{6, 150, 1}, Run{3, 40, 8}})
+        for (const Grid& grid : {box, ortho}) {
+            const Mesh mesh = test::soup(run.triangles + 7, run.triangles, size, run.reach);
+            const Voxels got =
+                voxelize(queue(), mesh, grid, Points{.safetyFactor = run.safetyFactor, .channels = Channel::count});
+            EXPECT_EQ(countsOf(got), expectedCounts(mesh, grid, run.safetyFactor)) << run.reach << " gamma " << run.safetyFactor;
+        }
+}
+
+// All points of a mesh inside the grid: as many as the formula says.
+TEST(Points, AreAsManyAsTheFormulaSays) {
+    for (const test::Case& one : test::smallShapes()) {
+        const Grid grid = Grid::fit(one.mesh.bounds(), 40);
+        std::uint64_t expected = 0;
+        for (std::size_t t = 0; t < one.mesh.triangleCount(); ++t) {
+            std::array<Double3, 3> corners;
+            for (int k = 0; k < 3; ++k) corners[k] = grid.toVoxel(one.mesh.positions[one.mesh.indices[3 * t + k]]);
+            const test::Factors f = test::factorsOf(corners, 1);
+            expected += formula(f.edges, f.inside) << (2 * f.halvings);
+        }
+        const Voxels got = voxelize(queue(), one.mesh, grid, Points{.channels = Channel::count});
+        EXPECT_EQ(std::accumulate(got.counts().begin(), got.counts().end(), std::uint64_t(0)), expected) << one.name;
+    }
+}
+
+// On a perspective grid the triangle is tessellated in world space, by the size of the cells where it is.
+TEST(Points, FollowASphereOnPerspectiveGrids) {
+    constexpr float kRadius = 5;
+    const Mesh mesh = test::closedSphere(Float3(0), kRadius, Float3(0.4f, 1, 2), 32, 16);
+    const Grid grid = test::cameraGrids(mesh.bounds(), {64, 64, 64})[1];
+    const Voxels few = voxelize(queue(), mesh, grid, Points{}), many = voxelize(queue(), mesh, grid, Points{.safetyFactor = 6});
+    const Voxels centres = voxelize(queue(), mesh, grid, Sampled{});
+    EXPECT_GT(few.occupied(), centres.occupied());
+    EXPECT_GT(many.occupied(), few.occupied());
+    std::uint64_t lost = 0, left = 0;
+    few.forEach([&](Uint3 c, std::uint64_t) { lost += !many.host().at(c.x, c.y, c.z); });
+    centres.forEach([&](Uint3 c, std::uint64_t) { left += !many.host().at(c.x, c.y, c.z); });
+    EXPECT_LE(lost, few.occupied() / 100);
+    EXPECT_LE(left, centres.occupied() / 50);
+    // A voxel reaches to the sphere or to its flat pieces, whose middles lie at radius 5 (1 - cos(pi / 16)) = 0.1 inside.
+    many.forEach([&](Uint3 c, std::uint64_t) {
+        const Double3 a = grid.toWorld(Double3(c)), b = grid.toWorld(Double3(c) + Double3(1));
+        EXPECT_LE(std::abs(glm::length((a + b) * 0.5) - kRadius), glm::length(b - a) * 0.5 + 0.1 + 0.1);
+    });
+}
+
+void expectNoExtra(const Mesh& mesh, const Grid& grid, const std::string& name, float safetyFactor) {
+    const Voxels got = voxelize(queue(), mesh, grid, Points{.safetyFactor = safetyFactor});
+    const reference::Truth truth = reference::conservative(mesh, grid);
+    const VoxelDifference diff = compareVoxels(got.host(), truth.certain, truth.possible);
+    EXPECT_EQ(diff.extra, 0u) << name << " gamma " << safetyFactor << ": " << diff.text();
+}
+
+TEST(Points, NeverMarkACellThatNoTriangleTouches) {
+    const Uint3 size(33, 31, 40);
+    const Grid grid = Grid::box(Float3(0), 1.0f, size);
+    for (const test::Case& one : test::meanMeshes(size)) expectNoExtra(one.mesh, grid, one.name, 1);
+    for (const test::Case& one : test::smallShapes())
+        for (const float gamma : {0.25f, 1.0f, 5.0f}) expectNoExtra(one.mesh, Grid::fit(one.mesh.bounds(), 33), one.name, gamma);
+}
+
+// In single precision a corner is off by two roundings of a coordinate up to N and a point by two more: within 2^-21 N cells of its triangle.
+TEST(Points, SinglePrecisionStaysNearTheTriangle) {
+    const test::WithPrecision single(queue(), Precision::single);
+    for (const test::Case& one : test::smallShapes()) {
+        const Grid grid = Grid::fit(one.mesh.bounds(), 64);
+        const Voxels got = voxelize(queue(), one.mesh, grid, Points{});
+        const reference::Truth truth = reference::conservative(one.mesh, grid);
+        // Wrong are points that near a cell's face: some 4 * 2^-21 * 64 of all.
+        EXPECT_LE(compareVoxels(got.host(), truth.certain, truth.possible).extra, 2 + got.occupied() / 2000) << one.name;
+    }
+}
+
+// Measured: at safety factor 1 up to 0.3 % of the thin surface, more only where parts are thinner than a cell; at 2 up to 0.01 %.
+TEST(Points, MissLittleOfTheThinSurface) {
+    std::uint64_t missing = 0, all = 0;
+    for (const test::Case& one : test::smallShapes()) {
+        const Grid grid = Grid::fit(one.mesh.bounds(), 64);
+        const reference::Truth thin = reference::thin(one.mesh, grid);
+        const VoxelDifference once = compareVoxels(voxelize(queue(), one.mesh, grid, Points{}).host(), thin.certain, thin.possible);
+        const VoxelDifference twice =
+            compareVoxels(voxelize(queue(), one.mesh, grid, Points{.safetyFactor = 2}).host(), thin.certain, thin.possible);
+        EXPECT_LE(twice.missing, once.missing) << one.name;
+        RecordProperty(one.name, std::to_string(100 * once.missingShare()) + " % at 1, " + std::to_string(100 * twice.missingShare()) + " % at 2");
+        missing += once.missing;
+        all += once.truth;
+    }
+    EXPECT_LE(double(missing), 0.003 * double(all));
+}
+
+TEST(Points, SkipWhatIsTooLargeAndCountIt) {
+    const Grid grid = Grid::box(Float3(0), 1.0f, Uint3(16));
+    const Mesh mesh = test::triangles({{-1e9f, -1e9f, 3}, {1e9f, -1e9f, 3}, {0, 1e9f, 3},            // an edge of more than 2^26 cells
+                                       {-1e6f, -1e6f, 3.5f}, {1e6f, -1e6f, 3.5f}, {0, 1e6f, 3.5f}});  // 2^20: tessellated where the grid is
+    const Voxels got = voxelize(queue(), mesh, grid, Points{});
+    EXPECT_EQ(got.report().skippedTriangles, 1u);
+    EXPECT_EQ(got.occupied(), 256u);
+}
+
+}  // namespace
+}  // namespace vitrail

@@ -1,0 +1,117 @@
+// sampled: equal to the plain scan of column centres, bit for bit, on every kind of grid.
+#include <gtest/gtest.h>
+#include <vitrail/reference/truth.h>
+#include <vitrail/voxelize/sampled.h>
+
+#include <algorithm>
+
+#include "tests/support/cases.h"
+#include "tests/support/closed.h"
+#include "tests/support/device.h"
+
+namespace vitrail {
+namespace {
+
+using test::queue;
+
+std::uint64_t differing(const VoxelBits& a, const VoxelBits& b) {
+    std::uint64_t bits = 0;
+    for (std::size_t w = 0; w < a.words.size(); ++w) bits += static_cast<std::uint64_t>(__builtin_popcount(a.words[w] ^ b.words[w]));
+    return bits;
+}
+
+void expectScan(const Mesh& mesh, const Grid& grid, const std::string& name) {
+    const Voxels got = voxelize(queue(), mesh, grid, Sampled{});
+    const VoxelBits scan = reference::sampled(mesh, grid);
+    EXPECT_EQ(differing(got.host(), scan), 0u) << name << " on " << grid.text() << ", " << scan.occupied() << " in the scan";
+}
+
+TEST(Sampled, EqualsTheScanOnShapes) {
+    for (const test::Case& one : test::smallShapes()) {
+        for (const unsigned longest : {1u, 31u, 32u, 33u, 64u}) expectScan(one.mesh, Grid::fit(one.mesh.bounds(), longest), one.name);
+        for (const Grid& grid : test::cameraGrids(one.mesh.bounds(), {50, 37, 70})) expectScan(one.mesh, grid, one.name);
+    }
+}
+
+TEST(Sampled, EqualsTheScanOnMeanMeshes) {
+    for (const Uint3 size : {Uint3(1), Uint3(31, 33, 32), Uint3(9, 70, 100)}) {
+        const Grid grid = Grid::box(Float3(0), 1.0f, size);
+        for (const test::Case& one : test::meanMeshes(size)) {
+            expectScan(one.mesh, grid, one.name);
+            for (const Grid& camera : test::cameraGrids({Float3(0), Float3(size)}, size)) expectScan(one.mesh, camera, one.name);
+        }
+    }
+}
+
+// Far from the origin and at any scale voxel coordinates are rounded, but alike on both sides.
+TEST(Sampled, EqualsTheScanAtAnyScaleAndPlace) {
+    for (const float scale : {1e-6f, 1e-3f, 1.0f, 1e6f})
+        for (const Float3 centre : {Float3(0), Float3(1000, -77, 3.3f) * scale}) {
+            const Mesh torus = test::closedTorus(centre, 5 * scale, 2 * scale, Float3(0.3f, 1.1f, 2), 24, 12);
+            expectScan(torus, Grid::fit(torus.bounds(), 48), "torus");
+        }
+}
+
+// The slices of a column that a closed surface crosses come in pairs; counted with multiplicity, since two crossings may share a voxel.
+TEST(Sampled, ClosedSurfacesAreCrossedAnEvenNumberOfTimes) {
+    for (const test::Case& one : test::smallShapes()) {
+        if (one.name == "tree") continue;  // its leaves are open
+        std::vector<Grid> grids = test::cameraGrids(one.mesh.bounds(), {40, 40, 64});
+        grids.pop_back();  // begins inside the mesh
+        grids.push_back(Grid::fit(one.mesh.bounds(), 64));
+        for (const Grid& grid : grids) {
+            const Voxels voxels = voxelize(queue(), one.mesh, grid, Sampled{.channels = Channel::count});
+            std::vector<std::uint64_t> column(std::size_t(grid.size().x) * grid.size().y, 0);
+            const std::vector<std::uint32_t>& counts = voxels.counts();
+            voxels.forEach([&](Uint3 cell, std::uint64_t index) { column[std::size_t(cell.y) * grid.size().x + cell.x] += counts[index]; });
+            EXPECT_EQ(std::count_if(column.begin(), column.end(), [](std::uint64_t n) { return n % 2 != 0; }), 0) << one.name;
+            EXPECT_GT(std::count_if(column.begin(), column.end(), [](std::uint64_t n) { return n != 0; }), 20) << one.name;
+        }
+    }
+}
+
+// Every triangle alone, scanned on the host, against the counts of the device.
+TEST(Sampled, CountsTrianglesInAVoxel) {
+    const Uint3 size(20, 17, 40);
+    const Grid grid = Grid::box(Float3(0), 1.0f, size);
+    const Mesh mesh = test::soup(11, 200, size, 12);
+    std::vector<std::uint32_t> expected(grid.voxelCount(), 0);
+    const auto at = [&](Uint3 c) { return (std::size_t(c.z) * size.y + c.y) * size.x + c.x; };
+    for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
+        const VoxelBits one = reference::sampled(
+            test::triangles({mesh.positions[3 * t], mesh.positions[3 * t + 1], mesh.positions[3 * t + 2]}), grid);
+        for (std::uint32_t z = 0; z < size.z; ++z)
+            for (std::uint32_t y = 0; y < size.y; ++y)
+                for (std::uint32_t x = 0; x < size.x; ++x) expected[at({x, y, z})] += one.at(x, y, z);
+    }
+    const Voxels got = voxelize(queue(), mesh, grid, Sampled{.channels = Channel::count});
+    std::uint64_t all = 0;
+    got.forEach([&](Uint3 cell, std::uint64_t index) {
+        EXPECT_EQ(got.counts()[index], expected[at(cell)]);
+        all += got.counts()[index];
+    });
+    std::uint64_t wanted = 0;
+    for (const std::uint32_t n : expected) wanted += n;
+    EXPECT_EQ(all, wanted);
+    EXPECT_GT(all, 1000u);
+}
+
+// The single-precision path takes the same decisions wherever rounding leaves them: a scan is off by the voxels whose point lies within
+// 2^-22 of the grid's size from an edge or a face. On a level plane at a slice's middle that is none.
+TEST(Sampled, SinglePrecisionScansToo) {
+    const test::WithPrecision single(queue(), Precision::single);
+    const Mesh square = test::triangles({{0, 0, 4.5f}, {64, 0, 4.5f}, {64, 64, 4.5f}, {0, 0, 4.5f}, {64, 64, 4.5f}, {0, 64, 4.5f}});
+    const Grid grid = Grid::box(Float3(0), 1.0f, {64, 64, 9});
+    const Voxels got = voxelize(queue(), square, grid, Sampled{});
+    EXPECT_TRUE(got.report().singlePrecision);
+    EXPECT_EQ(differing(got.host(), reference::sampled(square, grid)), 0u);
+    // At random: a column's edge lies within 2^-22 * 64 of its centre, or a depth that near to a face, once in some 10^4 voxels.
+    for (const test::Case& one : test::smallShapes()) {
+        const Grid fit = Grid::fit(one.mesh.bounds(), 64);
+        const VoxelBits scan = reference::sampled(one.mesh, fit);
+        EXPECT_LE(differing(voxelize(queue(), one.mesh, fit, Sampled{}).host(), scan), 2 + scan.occupied() / 200) << one.name;
+    }
+}
+
+}  // namespace
+}  // namespace vitrail
