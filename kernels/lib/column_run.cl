@@ -1,9 +1,10 @@
 // lib/column_run.cl: the cells that a triangle touches, as runs along z, column by column (Schwarz & Seidel 2010, section 3: the
 // triangle's box, its plane, and the edge functions of its three projections decide a cell; each is a half-line along z).
 //
-// Coordinates are local to the low cell of the triangle's box, so that small triangles keep their digits. Every bound moves outward by
-// what its rounding may have lost, so that a cell touched is never left out: with vertices off by at most `delta` (two roundings of
-// coordinates up to N, or beyond the grid) an edge function a x + b y + c is off by at most (|a| + |b|) 8 delta + 2 delta (extents), the plane likewise.
+// Coordinates are local to the low cell of the triangle's box, so that small triangles keep their digits. Every bound moves
+// outward by what its rounding may have lost, so that a cell touched is never left out: with vertices off by at most `delta` (two
+// roundings of coordinates up to N, or beyond the grid) an edge function a x + b y + c is off by at most (|a| + |b|) 8 delta + 2
+// delta (extents), the plane likewise.
 #ifndef VITRAIL_LIB_COLUMN_RUN
 #define VITRAIL_LIB_COLUMN_RUN
 #include "lib/triangle.cl"
@@ -27,12 +28,12 @@ typedef struct {
 
 typedef struct {
     int xFirst, xLast, yFirst, yLast, zFirst, zLast;  // the triangle's box in cells of the grid
-    bool exact;      // every cell of the box is touched
-    int wide;        // axes along which the triangle is not within one cell of the grid
-    Bounds3 xOfY;    // from the xy projection: x for a row y
-    Bounds3 zOfY;    // from the yz projection
-    Bounds3 zOfX;    // from the zx projection
-    real planeX, planeY, planeLow, planeHigh;  // z between planeX x + planeY y + planeLow and ... + planeHigh
+    bool exact;                                       // every cell of the box is touched
+    int wide;                                         // axes along which the triangle is not within one cell of the grid
+    Bounds3 xOfY;                                     // from the xy projection: x for a row y
+    Bounds3 zOfY;                                     // from the yz projection
+    Bounds3 zOfX;                                     // from the zx projection
+    real planeX, planeY, planeLow, planeHigh;         // z between planeX x + planeY y + planeLow and ... + planeHigh
 } Runs;
 
 // Edge from (v0, u0) to (v1, u1) of a projection whose inside is where  s ((v1 - v0) (u - u0) - (u1 - u0) (v - v0)) >= 0.
@@ -63,7 +64,8 @@ static inline real run_high(const Bounds3* b, real v) {
                 fmin(b->high[1].slope * v + b->high[1].offset, b->high[2].slope * v + b->high[2].offset));
 }
 
-static inline void run_projection(Bounds3* bounds, real v0, real u0, real v1, real u1, real v2, real u2, real s, real delta, real extents) {
+static inline void run_projection(Bounds3* bounds, real v0, real u0, real v1, real u1, real v2, real u2, real s, real delta,
+                                  real extents) {
     run_edge(bounds, 0, v0, u0, v1, u1, s, delta, extents);
     run_edge(bounds, 1, v1, u1, v2, u2, s, delta, extents);
     run_edge(bounds, 2, v2, u2, v0, u0, s, delta, extents);
