@@ -89,13 +89,12 @@ glm::dvec3 refract(glm::dvec3 d, glm::dvec3 n, double ratio) {
 }
 
 TEST(Glass, ASphereBendsRaysBySnellsLaw) {
-    const double eta = 1.5, radius = 0.5;
+    const double eta = 1.5;
     Scene scene = sceneOf(makeShape("sphere"), static_cast<float>(eta));
     scene.environment.map = directionMap();
     const float size = scene.mesh.bounds().high.x;
     const Camera camera = frontal(64);
     const Image image = shade(queue(), scene, camera, Glass{.method = {.resolution = 128}, .ground = kNoGround, .samples = 1});
-    (void)radius;
     int all = 0, good = 0;
     double sum = 0;
     for (std::uint32_t y = 0; y < camera.height; ++y)
@@ -166,7 +165,7 @@ TEST(Shadow, OfASlabIsItsTransmittance) {
     camera.target = Float3(0.8f, -0.6f, 0.0f);
     camera.fieldOfViewDegrees = 20;
     camera.width = camera.height = 65;
-    const Image image = shade(queue(), scene, camera, Shadow{.method = {.resolution = 32}, .ground = {.automatic = false, .height = -0.6f}, .samples = 1});
+    const Image image = shade(queue(), scene, camera, Shadow{.method = {.resolution = 32}, .ground = {.height = -0.6f, .automatic = false}, .samples = 1});
     // Straight through: (1 - F)^2 exp(-sigma d) under the box, 1 beside it. Tolerance as for the slab above.
     double least = 2, most = -1;
     for (const Float4& p : image.picture().pixels) {
