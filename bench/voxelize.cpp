@@ -199,7 +199,7 @@ std::vector<std::string> optionChoices(const Method& method, std::uint32_t resol
     std::vector<std::string> choices{""};
     if (resolution != kSweepResolution) return choices;
     for (const MethodOption& option : method.options)
-        for (const double factor : {0.5, 2.0, 4.0, 8.0})
+        for (const double factor : {0.5, 2.0, 4.0})
             if (const double value = option.byDefault * factor; !option.name.empty() && value >= option.least && value <= option.most) {
                 char text[64];
                 std::snprintf(text, sizeof text, "%s=%g", std::string(option.name).c_str(), value);

@@ -4,8 +4,8 @@
     plot.py out/bench/voxelize.json -o out/bench/voxelize.svg [--mesh bun_zipper,horse] [--error missing]
 
 One panel a mesh; across, the error; up, the kernel time; both logarithmic, zero error in a strip of its own at the left edge. One colour a
-method, a line along the resolution, written beside it; a sweep of an option is dashed. Native lines are points. At each resolution the
-Pareto front, what nothing else beats in both, is a solid dark line.
+method, a line along the resolution, at which markers grow; a sweep of an option is dashed. Native lines are points. At each resolution the
+Pareto front, the methods that no other beats in both, is a solid dark line.
 """
 
 import argparse
@@ -25,7 +25,7 @@ except ImportError as error:
 
 # Okabe & Ito 2008: told apart by colour-blind readers too.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
-NATIVE_COLOURS = ("#555555", "#999999")
+NATIVE_COLOURS = ("#333333", "#777777")
 MARKERS = ("o", "s", "D", "^", "v", "P")
 ERROR_TEXT = {
     "missing": "missing voxels, share of all touched cells",
@@ -87,30 +87,30 @@ class Across:
         axes.set_xlim(self.low - self.strip, max(self.high, self.low + 0.05) + 0.04 * (self.high - self.low))
 
 
-def draw_panel(axes, points, across, styles, error, labels, decades):
-    for method, style in styles.items():
-        mine = [p for p in points if p.method == method]
+def area(resolution, resolutions):
+    """Of a marker, in points squared."""
+    return 28 if len(resolutions) < 2 else 12 + 60 * resolutions.index(resolution) / (len(resolutions) - 1)
+
+
+def draw_panel(axes, points, across, styles, error, resolutions, decades):
+    for style in styles.values():
+        mine = [p for p in points if p.method == style["method"]]
         plain = sorted((p for p in mine if not p.option), key=lambda p: p.resolution)
         if not plain:
             continue
         xs, ys = [across.at(p) for p in plain], [p.kernel_ms for p in plain]
-        native = plain[0].native
-        axes.plot(xs, ys, color=style["colour"], marker=style["marker"], markersize=5, linewidth=0 if native else 1.3,
-                  alpha=0.95, zorder=3)
-        swept = sorted((p for p in mine if p.option), key=lambda p: float(p.option.split("=")[1]))
+        if not plain[0].native:
+            axes.plot(xs, ys, color=style["colour"], linewidth=1.3, zorder=3)
+        axes.scatter(xs, ys, s=[area(p.resolution, resolutions) for p in plain], color=style["colour"], marker=style["marker"],
+                     linewidth=1.2 if plain[0].native else 0, zorder=3.5)
+        swept = [p for p in mine if p.option]
         if swept:
-            defaults = [p for p in plain if p.resolution == swept[0].resolution]
-            chain = sorted(swept + defaults, key=lambda p: across.at(p))
+            chain = sorted(swept + [p for p in plain if p.resolution == swept[0].resolution], key=lambda p: across.at(p))
             axes.plot([across.at(p) for p in chain], [p.kernel_ms for p in chain], color=style["colour"], marker=style["marker"],
-                      markersize=3.2, markerfacecolor="white", linewidth=0.9, linestyle="--", zorder=2)
-    resolutions = sorted({p.resolution for p in points})
+                      markersize=4, markerfacecolor="white", linewidth=0.9, linestyle="--", zorder=2)
     for resolution in resolutions:
-        edge = front([p for p in points if p.resolution == resolution and not p.native and not p.option], error)
+        edge = front([p for p in points if p.resolution == resolution and not p.native], error)
         axes.plot([across.at(p) for p in edge], [p.kernel_ms for p in edge], color="#222222", linewidth=1.0, zorder=2.5)
-        if labels and edge:  # at the right end, which the line along the resolution leaves free
-            last = edge[-1]
-            axes.annotate(str(resolution), (across.at(last), last.kernel_ms), textcoords="offset points", xytext=(6, -3), fontsize=7,
-                          color="#222222")
     axes.set_yscale("log")
     if decades < 1:  # a small difference is to look small
         low, high = min(p.kernel_ms for p in points), max(p.kernel_ms for p in points)
@@ -143,12 +143,13 @@ def main():
     styles, ours, natives = {}, 0, 0
     for method in methods:
         if method.startswith("native_"):
-            styles[method] = {"colour": NATIVE_COLOURS[natives % 2], "marker": ("x", "+")[natives % 2]}
+            styles[method] = {"colour": NATIVE_COLOURS[natives % 2], "marker": ("x", "+")[natives % 2], "method": method}
             natives += 1
         else:
-            styles[method] = {"colour": COLOURS[ours % len(COLOURS)], "marker": MARKERS[ours % len(MARKERS)]}
+            styles[method] = {"colour": COLOURS[ours % len(COLOURS)], "marker": MARKERS[ours % len(MARKERS)], "method": method}
             ours += 1
-    several = len({p.resolution for p in points}) > 1
+    resolutions = sorted({p.resolution for p in points})
+    several = len(resolutions) > 1
     swept = sorted({p.option.split("=")[0] for p in points if p.option})
 
     columns = min(3, len(meshes))
@@ -166,7 +167,7 @@ def main():
             axes.axis("off")
             continue
         mine = [p for p in points if p.mesh == meshes[index]]
-        draw_panel(axes, mine, across, styles, options.error, several, decades)
+        draw_panel(axes, mine, across, styles, options.error, resolutions, decades)
         axes.set_title(f"{meshes[index]}: {mine[0].triangles:,} triangles".replace(",", " "), fontsize=9.5)
         axes.tick_params(labelsize=8)
         # With panels missing from the last row, the ones above them keep their own ticks.
@@ -180,11 +181,15 @@ def main():
         native = method.startswith("native_")
         text = method.replace("native_", "native: ").replace("_", " ") if native else method
         entries.append(Line2D([], [], color=style["colour"], marker=style["marker"], linewidth=0 if native or not several else 1.3, label=text))
-    entries.append(Line2D([], [], color="#222222", linewidth=1.0, label="Pareto front" + (" of one\nresolution (number)" if several else "")))
+    entries.append(Line2D([], [], color="#222222", linewidth=1.0, label="Pareto front" + (",\none a resolution" if several else "")))
     for option in swept:
         entries.append(Line2D([], [], color="#888888", linewidth=0.9, linestyle="--", marker="o", markersize=3.2, markerfacecolor="white",
                               label=f"{option} varied"))
-    figure.legend(handles=entries, loc="upper left", bbox_to_anchor=(inner, upper), fontsize=8.5, frameon=False)
+    if several:
+        for resolution in resolutions:
+            entries.append(Line2D([], [], color="#888888", marker="o", linewidth=0, markersize=math.sqrt(area(resolution, resolutions)),
+                                  label=f"resolution {resolution}"))
+    figure.legend(handles=entries, loc="upper left", bbox_to_anchor=(inner, upper), fontsize=8.5, frameon=False, labelspacing=0.6)
     resolution = "" if several else f"longest axis {points[0].resolution} voxels; "
     figure.text(0.12 / width, 1 - 0.1 / height, "Surface voxelization: error against time", va="top", fontsize=11.5, weight="bold")
     figure.text(0.12 / width, 1 - 0.36 / height, resolution + records.machine_text(machine), va="top", fontsize=8, color="#555555")

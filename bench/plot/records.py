@@ -28,6 +28,7 @@ def _from_benchmark(document):
     found = [b for b in document["benchmarks"] if b.get("aggregate_name") == "median"]
     if not found:  # one repetition: no aggregates
         found = [b for b in document["benchmarks"] if b.get("run_type") == "iteration"]
+    found.sort(key=lambda one: one.get("family_index", 0))  # as registered: they ran, and stand in the file, in random order
     points = []
     for one in found:
         if one.get("error_occurred"):

@@ -122,7 +122,7 @@ int runInfo(const Options& options) {
             "\nprogram cache   " + (device.cacheFolder().empty() ? "none: no folder can be written" : device.cacheFolder()) +
             "\nprograms        " + (fromCache ? "loaded from the cache in " : "compiled in ") + msText(buildMs) + " ms" +
             (fromCache || device.cacheFolder().empty() ? "" : "; the next start finds them in the cache") + "\nfirst kernel    " +
-            msText(firstKernelMs) + " ms after the program's start\n";
+            msText(firstKernelMs) + " ms after the program was loaded\n";
     std::fputs(text.c_str(), stdout);
     return 0;
 }

@@ -48,7 +48,7 @@ int main(int argc, char** argv) {
     try {
         return run();
     } catch (const vitrail::Error& error) {
-        note(error.what());
+        note(error.code() == vitrail::ErrorCode::cancelled ? "vitrail: interrupted; nothing was written" : error.what());
         return exitCode(error.code());
     } catch (const std::bad_alloc&) {
         note("vitrail: the machine is out of memory\n  try:    a smaller grid or mesh");

@@ -73,7 +73,7 @@ private:
 };
 
 TEST_F(Program, EveryVerbHasHelp) {
-    for (const std::string verb : {"", "info ", "shape ", "voxelize ", "compare "}) {
+    for (const std::string verb : {"", "info ", "shape ", "voxelize ", "compare ", "render "}) {
         const Result help = run(verb + "--help");
         EXPECT_EQ(help.code, 0) << verb;
         EXPECT_NE(help.out.find("Usage: "), std::string::npos) << verb << help.out;
@@ -189,6 +189,21 @@ TEST_F(Program, ChannelsComeOneRowAVoxel) {
     EXPECT_EQ(bytes("out.normal.npy"), rows * 12);
 }
 
+TEST_F(Program, RenderWritesPictures) {
+    makeMesh();
+    const Result result = run("render mesh.ply --effect voxels -r 16 --size 40x30 -o out.png -o out.exr --json");
+    ASSERT_EQ(result.code, 0) << result.err;
+    const json rendered = document(result, "vitrail.render.1");
+    EXPECT_EQ(rendered["size"], json({40, 30}));
+    EXPECT_EQ(files(), (std::set<std::string>{"mesh.ply", "out.png", "out.exr"}));
+
+    for (const std::string arguments : {"--effect none -o a.png", "--effect voxels --size 40 -o a.png", "--method magic -o a.png", "--effect voxels"})
+        EXPECT_EQ(run("render mesh.ply " + arguments).code, 2) << arguments;
+    EXPECT_EQ(run("render mesh.ply --effect voxels -r 16 --size 40x30 -o none/a.png").code, 1);
+    EXPECT_EQ(run("render mesh.ply --effect voxels -r 16 --size 40x30 -o a.bmp").code, 1);
+    EXPECT_EQ(files(), (std::set<std::string>{"mesh.ply", "out.png", "out.exr"}));
+}
+
 #ifdef VITRAIL_HAS_REFERENCE
 
 TEST_F(Program, CompareKnowsEveryProduct) {
@@ -248,7 +263,7 @@ TEST_F(Program, WrittenVoxelsScoreAsTheirMethod) {
 
 TEST_F(Program, InterruptEndsWithoutOutput) {
     makeMesh();
-    const Result result = run("compare mesh.ply -r 256 --repeats 1000 --json", "timeout --preserve-status --signal=INT 2");
+    const Result result = run("compare mesh.ply -r 256 --repeats 1000 --json", "timeout --preserve-status --signal=INT 3");
     EXPECT_EQ(result.code, 130) << result.err;
     EXPECT_EQ(result.out, "");
     EXPECT_NE(result.err.find("interrupted"), std::string::npos) << result.err;
