@@ -45,9 +45,9 @@ std::vector<Input> inputs() {
         all.push_back({name, [=] { return makeShape(name, parameters); }});
     };
     shape("torus", {});
-    shape("gyroid", {"cells=4", "resolution=160"});
+    shape("gyroid", {});
     shape("tree", {});
-    shape("terrain", {"cells=512"});
+    shape("terrain", {"cells=256"});
     if (const char* folder = std::getenv("VITRAIL_DATA"))
         for (const char* file : {"teapot.ply", "bun_zipper.ply", "horse.ply", "turbineblade.ply", "dragon_vrip_res2.ply"})
             if (const auto path = std::filesystem::path(folder) / "meshes" / file; std::filesystem::exists(path))

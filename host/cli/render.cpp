@@ -117,7 +117,7 @@ int runRender(const Options& options) {
     const ImageReport& report = image.report();
     stopIfInterrupted();
     const float exposure = options.exposure > 0 ? options.exposure : options.effect == "glass" ? automaticExposure(picture) : 1.0f;
-    for (const std::string& output : options.outputs) savePicture(output, picture, exposure);
+    for (const std::string& output : options.outputs) savePicture(output, picture, exposure, options.effect == "glass" ? ToneCurve::filmic : ToneCurve::none);
     bar.clear();
     if (options.json) {
         Json out = document("render");

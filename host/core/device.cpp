@@ -202,9 +202,6 @@ std::shared_ptr<DeviceState> makeDeviceState(const cl::Context& context, const c
     state->info = describe(device);
     state->memoryLimit = defaultMemoryLimit(state->info);
     state->cacheFolder = findCacheFolder();
-    // PoCL keeps a cache of its own. Asked for a binary it compiles every kernel for any local size, which takes several times as long as
-    // what is then used, and saves nothing.
-    state->storesPrograms = !isPocl(state->info.platform) || !environment("VITRAIL_CACHE_DIR").empty();
     return state;
 }
 

@@ -41,7 +41,6 @@ struct DeviceState {
     std::atomic<std::uint64_t> memoryLimit{0};
     AtomicCounters counters;
     std::string cacheFolder;
-    bool storesPrograms = true;  // binaries go to the cache folder
 
     std::mutex mutex;  // guards what follows
     std::function<void(const std::string&)> log;

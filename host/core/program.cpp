@@ -153,7 +153,7 @@ cl::Program program(DeviceState& device, const std::string& part, const std::str
                                      device.info.driverVersion, std::string(VITRAIL_VERSION)})
         key.add(piece);
     const std::filesystem::path file =
-        device.cacheFolder.empty() || !device.storesPrograms
+        device.cacheFolder.empty()
             ? std::filesystem::path()
             : std::filesystem::path(device.cacheFolder) / (part + "-" + key.text() + ".bin");
 

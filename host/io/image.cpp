@@ -210,7 +210,7 @@ Picture loadPicture(const std::filesystem::path& file) { return decode(io_detail
 
 Picture loadPictureFromMemory(std::span<const std::byte> bytes, const std::string& name) { return decode(bytes, name); }
 
-void savePicture(const std::filesystem::path& file, const Picture& picture, float exposure) {
+void savePicture(const std::filesystem::path& file, const Picture& picture, float exposure, ToneCurve curve) {
     const std::string name = file.string(), format = lowerExtension(file);
     if (format != "exr" && format != "png") {
         fail("pictures are written as .exr or .png, not as " + (format.empty() ? "a file without ending" : "." + format), name,
@@ -249,7 +249,8 @@ void savePicture(const std::filesystem::path& file, const Picture& picture, floa
     for (const Float4& pixel : picture.pixels) {
         for (int c = 0; c < channels; ++c) {
             // Far beyond white the curve is flat; the bound keeps its squares finite.
-            const float linear = c == 3 ? tidy(pixel[c]) : hable(std::min(tidy(pixel[c]) * exposure, 1e6f)) / white;
+            const float bright = std::min(tidy(pixel[c]) * exposure, 1e6f);
+            const float linear = c == 3 ? tidy(pixel[c]) : curve == ToneCurve::filmic ? hable(bright) / white : bright;
             const float value = c == 3 ? linear : toSrgb(linear);
             values.push_back(static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f)));
         }

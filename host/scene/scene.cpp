@@ -49,7 +49,7 @@ Material defaultGlass(const Bounds& bounds) {
     glass.indexOfRefraction = 1.5f;
     glass.roughness = 0.0f;
     // A path of half the diagonal leaves this much: a tint that shows thickness at any scale of the mesh.
-    glass.attenuationColour = Float3(0.82f, 0.94f, 0.90f);
+    glass.attenuationColour = Float3(0.62f, 0.88f, 0.80f);
     glass.attenuationDistance = std::isfinite(size) ? static_cast<float>(size / 2) : 0.0f;
     glass.thickness = std::isfinite(size) ? static_cast<float>(size) : 0.0f;
     return glass;

@@ -10,9 +10,13 @@
 #include <vitrail/core/queue.h>
 #include <vitrail/grid/camera.h>
 #include <vitrail/grid/grid.h>
+#include <vitrail/light/boxes.h>
+#include <vitrail/light/glass.h>
 #include <vitrail/methods.h>
 #include <vitrail/scene/mesh.h>
 #include <vitrail/scene/scene.h>
 #include <vitrail/scene/shapes.h>
+#include <vitrail/metrics/voxels.h>
+#include <vitrail/metrics/watertight.h>
 #include <vitrail/volume/voxels.h>
 #include <vitrail/voxelize/voxelize.h>

@@ -14,4 +14,8 @@ typedef double real;
 #endif
 #define REAL(x) ((real)(x))
 
+// One instruction each, where fmin and fmax also have to mind NaN; where nothing is NaN they are the same.
+static inline real real_min(real a, real b) { return a < b ? a : b; }
+static inline real real_max(real a, real b) { return a > b ? a : b; }
+
 #endif

@@ -1,5 +1,6 @@
-// lib/tasks.cl: a big triangle leaves blocks of its work as tasks (triangle, block) for a second launch, so that no work-group waits for
-// it. The list is of fixed length (host/voxelize/prepare.h); what a triangle marks does not depend on whether it got a place.
+// lib/tasks.cl: a big triangle leaves blocks of its work as tasks (triangle, block) for a second launch, so that no work-group
+// waits for it. The list is of fixed length (host/voxelize/prepare.h); what a triangle marks does not depend on whether it got a
+// place.
 #ifndef VITRAIL_LIB_TASKS
 #define VITRAIL_LIB_TASKS
 #include "lib/triangle.cl"
@@ -32,7 +33,8 @@ static inline int tasks_edge(int width, int height) {
     return edge;
 }
 
-// Columns [xLeast, xMost] x [yLeast, yMost] of a triangle, or of its block if block >= 0. Returns true when they were handed to the list.
+// Columns [xLeast, xMost] x [yLeast, yMost] of a triangle, or of its block if block >= 0. Returns true when they were handed to
+// the list.
 static inline bool tasks_columns(int* xLeast, int* xMost, int* yLeast, int* yMost, int block, global uint2* tasks, uint capacity,
                                  global uint* status, uint triangle) {
     const int width = *xMost - *xLeast + 1, height = *yMost - *yLeast + 1;

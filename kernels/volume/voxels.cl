@@ -1,5 +1,6 @@
 // volume/voxels.cl: rank directory, occupancy mip and resolved channels of occupancy bits (vitrail/volume/voxels.h).
 #include "layout/grid.h"
+#include "lib/frame.cl"
 #include "lib/range.cl"
 #pragma OPENCL FP_CONTRACT OFF
 #define RANK_CHUNK 256  // rank groups a chunk; SCAN_CHUNK of core/scan.cl
@@ -31,17 +32,6 @@ kernel void voxels_mip(global const uint* bits, global uchar* mip, ulong count, 
 kernel void voxels_normals(global const long* sums, global uint* normals, ulong count, uint perItem) {
     FOR_RANGE(i, count, perItem) {
         const float x = (float)sums[3 * i], y = (float)sums[3 * i + 1], z = (float)sums[3 * i + 2];
-        const float all = fabs(x) + fabs(y) + fabs(z);
-        uint code = 0u;
-        if (all > 0.0f) {
-            float u = x / all, v = y / all;
-            if (z < 0.0f) {
-                const float foldU = (1.0f - fabs(v)) * (u < 0.0f ? -1.0f : 1.0f);
-                v = (1.0f - fabs(u)) * (v < 0.0f ? -1.0f : 1.0f);
-                u = foldU;
-            }
-            code = ((uint)(int)rint(u * 32767.0f) & 0xffffu) | (((uint)(int)rint(v * 32767.0f) & 0xffffu) << 16);
-        }
-        normals[i] = code;
+        normals[i] = frame_pack_normal((float3)(x, y, z));
     }
 }

@@ -3,7 +3,18 @@
 #include "lib/mark.cl"
 #pragma OPENCL FP_CONTRACT OFF
 
-// Calls for every run of touched cells in columns [xLeast, xMost] x [yLeast, yMost]: ORs its bits, or adds to the channels.
+// ORs a run of touched cells, or adds it to the channels.
+static inline void conservative_run(const vitrail_GridDesc* grid, int x, int y, int zFirst, int zLast, global uint* bits,
+                                    const Channels* channels, const long normal[3], uint material, uint triangle) {
+    const size_t word = bits_column(grid, (uint)x, (uint)y);
+    if (!channels)
+        bits_set_run(bits, word, (uint)zFirst, (uint)zLast);
+    else
+        for (int z = zFirst; z <= zLast; ++z)
+            channels_add(channels, word + (size_t)(z >> 5) * VITRAIL_WORDS_PER_TILE, (uint)z & 31u, normal, material, triangle);
+}
+
+// Every run of touched cells in columns [xLeast, xMost] x [yLeast, yMost].
 static inline void conservative_columns(const vitrail_GridDesc* grid, const Runs* runs, int xLeast, int xMost, int yLeast, int yMost,
                                  global uint* bits, const Channels* channels, const long normal[3], uint material,
                                         uint triangle) {
@@ -11,29 +22,26 @@ static inline void conservative_columns(const vitrail_GridDesc* grid, const Runs
         int xFirst = xLeast, xLast = xMost;
         const real row = REAL(y - runs->yFirst);
         real rowLow = REAL(0), rowHigh = REAL(runs->zLast - runs->zFirst);
-        if (!runs->exact) {
-            run_row(runs, y, xLeast, xMost, &xFirst, &xLast);
-            rowLow = fmax(rowLow, run_low(&runs->zOfY, row));
-            rowHigh = fmin(rowHigh, run_high(&runs->zOfY, row));
+        if (runs->byXY) run_row(runs, y, xLeast, xMost, &xFirst, &xLast);
+        if (runs->byYZ) {
+            rowLow = real_max(rowLow, run_low(&runs->zOfY, row));
+            rowHigh = real_min(rowHigh, run_high(&runs->zOfY, row));
+        }
+        if (!runs->byZX) {  // every column of the row has the same run
+            const int zFirst = (int)ceil(rowLow) + runs->zFirst, zLast = (int)floor(rowHigh) + runs->zFirst;
+            if (zFirst <= zLast)
+                for (int x = xFirst; x <= xLast; ++x)
+                    conservative_run(grid, x, y, zFirst, zLast, bits, channels, normal, material, triangle);
+            continue;
         }
         const real planeLow = runs->planeY * row + runs->planeLow, planeHigh = runs->planeY * row + runs->planeHigh;
         for (int x = xFirst; x <= xLast; ++x) {
-            int zFirst = runs->zFirst, zLast = runs->zLast;
-            if (!runs->exact) {
-                const real column = REAL(x - runs->xFirst);
-                const real low = fmax(fmax(rowLow, runs->planeX * column + planeLow), run_low(&runs->zOfX, column));
-                const real high = fmin(fmin(rowHigh, runs->planeX * column + planeHigh), run_high(&runs->zOfX, column));
-                zFirst = (int)ceil(low) + runs->zFirst;
-                zLast = (int)floor(high) + runs->zFirst;
-                if (zFirst > zLast) continue;
-            }
-            const size_t word = bits_column(grid, (uint)x, (uint)y);
-            if (!channels)
-                bits_set_run(bits, word, (uint)zFirst, (uint)zLast);
-            else
-                for (int z = zFirst; z <= zLast; ++z)
-                    channels_add(channels, word + (size_t)(z >> 5) * VITRAIL_WORDS_PER_TILE, (uint)z & 31u, normal, material,
-                                 triangle);
+            const real column = REAL(x - runs->xFirst);
+            const real planeX = runs->planeX * column;
+            const real low = real_max(real_max(rowLow, planeX + planeLow), run_low(&runs->zOfX, column));
+            const real high = real_min(real_min(rowHigh, planeX + planeHigh), run_high(&runs->zOfX, column));
+            const int zFirst = (int)ceil(low) + runs->zFirst, zLast = (int)floor(high) + runs->zFirst;
+            if (zFirst <= zLast) conservative_run(grid, x, y, zFirst, zLast, bits, channels, normal, material, triangle);
         }
     }
 }

@@ -1,41 +1,43 @@
-// voxelize/points.cl: tessellate, one point a micro-triangle, scatter (Fei, Wang & Chen 2012, section 3; vitrail/voxelize/points.h).
+// voxelize/points.cl: tessellate, one point a micro-triangle, scatter (Fei, Wang & Chen 2012, section 3;
+// vitrail/voxelize/points.h).
 //
 // The pattern is that of the Direct3D 11 tessellator for triangles with integer partitioning, which the OpenGL 4.6 specification,
-// 11.2.2.1, describes for equal spacing: with inside factor n, ring k is the triangle shrunk about its centre to 1 - 2k/n, its sides cut
-// into n - 2k segments (side e of ring 0 into edge factor T_e); ring k and k + 1 are stitched side by side, and an odd n leaves one
-// triangle in the middle. Along a side P to Q with third corner R, in weights (alpha, beta) of Q and R:
+// 11.2.2.1, describes for equal spacing: with inside factor n, ring k is the triangle shrunk about its centre to 1 - 2k/n, its
+// sides cut into n - 2k segments (side e of ring 0 into edge factor T_e); ring k and k + 1 are stitched side by side, and an odd
+// n leaves one triangle in the middle. Along a side P to Q with third corner R, in weights (alpha, beta) of Q and R:
 //     outer points  alpha = 2k/(3n) + j dOuter (dOuter = 1/n, or 1/T_e in ring 0), beta = 2k/(3n)
 //     inner points  alpha = 2(k+1)/(3n) + i/n,                                    beta = 2(k+1)/(3n)
-// The stitch goes over the points of both sides in the order in which the tessellator would add them to an edge (a ruler function).
+// The stitch goes over the points of both sides in the order in which the tessellator would add them to an edge (a ruler
+// function).
 //
-// Micro-triangles are enumerated, never stored. A point is base + alpha U: of the numbers of one micro-triangle only, so that it does
-// not matter who computes it. Its rounding is below 8 * 2^-53 of the triangle's size and of its distance from the grid's origin, in cells: far
-// below a tie, while a coordinate that the three corners share is kept to the bit.
+// Micro-triangles are enumerated, never stored. A point is base + alpha U: of the numbers of one micro-triangle only, so that it
+// does not matter who computes it. Its rounding is below 8 * 2^-53 of the triangle's size and of its distance from the grid's
+// origin, in cells: far below a tie, while a coordinate that the three corners share is kept to the bit.
 //
-// A factor above MAX_FACTOR splits the triangle at its edge midpoints, as often as it takes (the passes of section 4.2), leaving out what lies
-// outside the grid.
+// A factor above MAX_FACTOR splits the triangle at its edge midpoints, as often as it takes (the passes of section 4.2), leaving
+// out what lies outside the grid.
 #include "lib/mark.cl"
 #pragma OPENCL FP_CONTRACT OFF
 
 #define MAX_FACTOR REAL(64)
-#define MAX_SPLITS 20   // halvings; what is still too coarse is skipped
-#define TASK_SPLITS 5   // a task is a part after at most this many halvings: 4^5 = TASKS_BLOCKS
+#define MAX_SPLITS 20  // halvings; what is still too coarse is skipped
+#define TASK_SPLITS 5  // a task is a part after at most this many halvings: 4^5 = TASKS_BLOCKS
 
 // Where points go: one write for the points of one word, or of one voxel, that follow each other.
 typedef struct {
     const vitrail_GridDesc* grid;
-    global uint* bits;        // null: `channels`
+    global uint* bits;  // unless there are channels
     const Channels* channels;
     long normal[3];
     uint material;
-    uint x, y, z;             // the last point's cell
-    uint mask, times;         // bits of its word that wait, and points; times 0: nothing does
+    uint x, y, z;      // the last point's cell
+    uint mask, times;  // bits of its word that wait, and points; times 0: nothing does
 } Scatter;
 
 static inline void points_flush(Scatter* s) {
     if (s->times == 0u) return;
     const size_t word = bits_word(s->grid, s->x, s->y, s->z);
-    if (s->bits)
+    if (!s->channels)
         atomic_or(s->bits + word, s->mask);
     else
         channels_add_times(s->channels, word, s->z & 31u, s->normal, s->material, s->times);
@@ -43,7 +45,7 @@ static inline void points_flush(Scatter* s) {
 }
 
 static inline void points_put(Scatter* s, uint x, uint y, uint z, uint times) {
-    const uint apart = s->bits ? (s->z ^ z) >> 5 : s->z ^ z;
+    const uint apart = s->channels ? s->z ^ z : (s->z ^ z) >> 5;
     if (s->times == 0u || s->x != x || s->y != y || apart != 0u) {
         points_flush(s);
         s->mask = 0u;
@@ -55,8 +57,8 @@ static inline void points_put(Scatter* s, uint x, uint y, uint z, uint times) {
     s->times += times;
 }
 
-// A corner or point in the space in which the triangle is tessellated: voxel coordinates, or for a perspective grid what is right, up and
-// along the view from the eye, in which the plane of a column's side is x = s z.
+// A corner or point in the space in which the triangle is tessellated: voxel coordinates, or for a perspective grid what is
+// right, up and along the view from the eye, in which the plane of a column's side is x = s z.
 static inline Point points_corner(const vitrail_GridDesc* grid, global const float* positions, uint vertex) {
     if (grid->kind != VITRAIL_GRID_PERSPECTIVE) return triangle_vertex(grid, positions, vertex);
     const size_t at = 3 * (size_t)vertex;
@@ -99,7 +101,8 @@ static inline bool points_outside(const vitrail_GridDesc* grid, const Point c[3]
                points_all_below(c[0].y, c[1].y, c[2].y) || points_all_below(y - c[0].y, y - c[1].y, y - c[2].y) ||
                points_all_below(c[0].z, c[1].z, c[2].z) || points_all_below(z - c[0].z, z - c[1].z, z - c[2].z);
     }
-    const real tx = REAL(grid->extent.x), ty = REAL(grid->extent.y), nearDepth = REAL(grid->extent.z), farDepth = REAL(grid->extent.w);
+    const real tx = REAL(grid->extent.x), ty = REAL(grid->extent.y), nearDepth = REAL(grid->extent.z),
+               farDepth = REAL(grid->extent.w);
     return points_all_below(c[0].z * tx + c[0].x, c[1].z * tx + c[1].x, c[2].z * tx + c[2].x) ||
            points_all_below(c[0].z * tx - c[0].x, c[1].z * tx - c[1].x, c[2].z * tx - c[2].x) ||
            points_all_below(c[0].z * ty + c[0].y, c[1].z * ty + c[1].y, c[2].z * ty + c[2].y) ||
@@ -109,7 +112,8 @@ static inline bool points_outside(const vitrail_GridDesc* grid, const Point c[3]
 }
 
 // T of eq. 1 for the edge p q, before it is rounded up: cells that it spans along the axis of most, times the safety factor. On a
-// perspective grid cells grow with the depth: by how many cells the point of the edge nearest to the eye, in the grid, moves for a whole edge,
+// perspective grid cells grow with the depth: by how many cells the point of the edge nearest to the eye, in the grid, moves for
+// a whole edge,
 //     d(x/z)/dt = (x1 z0 - x0 z1) / z^2.
 static inline real points_factor(const vitrail_GridDesc* grid, real gamma, Point p, Point q) {
     if (grid->kind != VITRAIL_GRID_PERSPECTIVE) return gamma * fmax(fabs(p.x - q.x), fmax(fabs(p.y - q.y), fabs(p.z - q.z)));
@@ -153,9 +157,12 @@ static inline void points_stitch(Scatter* s, Point p, Point q, Point r, int n, i
             stepInner = at != 0 && order < halfInner;
         }
         const bool mirrored = slot > slots;
-        if (stepInner) points_emit(s, baseInner, u, betaInner + REAL(2 * i + 1) * third + REAL(j + ((mirrored && stepOuter) ? 1 : 0)) * outerStep);
+        if (stepInner)
+            points_emit(s, baseInner, u,
+                        betaInner + REAL(2 * i + 1) * third + REAL(j + ((mirrored && stepOuter) ? 1 : 0)) * outerStep);
         if (stepOuter)
-            points_emit(s, baseOuter, u, betaOuter + REAL(2 * j + 1) * outerStep + REAL(i + ((!mirrored && stepInner) ? 1 : 0)) * third);
+            points_emit(s, baseOuter, u,
+                        betaOuter + REAL(2 * j + 1) * outerStep + REAL(i + ((!mirrored && stepInner) ? 1 : 0)) * third);
         i += stepInner ? 1 : 0;
         j += stepOuter ? 1 : 0;
     }
@@ -283,8 +290,8 @@ static inline void points_triangle(const vitrail_GridDesc* grid, float safetyFac
             uint cell[3], other[3];
             bool together = points_cell(grid, points_voxel(grid, c[0]), cell);
             for (int e = 1; e < 3; ++e)
-                together = together && points_cell(grid, points_voxel(grid, c[e]), other) && other[0] == cell[0] && other[1] == cell[1] &&
-                           other[2] == cell[2];
+                together = together && points_cell(grid, points_voxel(grid, c[e]), other) && other[0] == cell[0] &&
+                           other[1] == cell[1] && other[2] == cell[2];
             if (together)
                 points_put(&s, cell[0], cell[1], cell[2], points_count(n, edges));
             else
@@ -299,6 +306,7 @@ static inline void points_triangle(const vitrail_GridDesc* grid, float safetyFac
 
 kernel void points_mark(const vitrail_GridDesc grid, float safetyFactor, MARK_PARAMETERS) {
     const Channels channels = MARK_CHANNELS;
-    MARK_EACH(triangle, block, points_triangle(&grid, safetyFactor, positions, indices, vertexCount, triangle, block, bits, rank ? &channels : 0,
-                                            materials, tasks, taskCapacity, status))
+    MARK_EACH(triangle, block,
+              points_triangle(&grid, safetyFactor, positions, indices, vertexCount, triangle, block, bits, rank ? &channels : 0,
+                              materials, tasks, taskCapacity, status))
 }

@@ -1,20 +1,21 @@
-// voxelize/sampled.cl: the columns whose centre a triangle covers, and the slice of each (vitrail/voxelize/sampled.h). The arithmetic is
-// that of reference::sampled operation by operation, which host/reference/truth.cpp states as a contract.
+// voxelize/sampled.cl: the columns whose centre a triangle covers, and the slice of each (vitrail/voxelize/sampled.h). The
+// arithmetic is that of reference::sampled operation by operation, which host/reference/truth.cpp states as a contract.
 //
-// Within a row, "edge e crosses the line of column i" is a comparison of two products that rounding leaves monotonic in i, as every
-// step towards them is (an addition or a product with a factor of known sign). So each of the two edges that cross a row has one column
-// from which on it no longer does, and the columns between the two are those that the triangle meets, to the bit.
+// Within a row, "edge e crosses the line of column i" is a comparison of two products that rounding leaves monotonic in i, as
+// every step towards them is (an addition or a product with a factor of known sign). So each of the two edges that cross a row
+// has one column from which on it no longer does, and the columns between the two are those that the triangle meets, to the bit.
 #include "lib/mark.cl"
 #pragma OPENCL FP_CONTRACT OFF
 
-// A corner: the line of a column is x = cx w, y = cy w; z is the slice coordinate. w is not looked at unless the grid is perspective.
+// A corner: the line of a column is x = cx w, y = cy w; z is the slice coordinate. w is not looked at unless the grid is
+// perspective.
 typedef struct {
     real x, y, w, z;
 } Sample;
 
 typedef struct {
     Sample a, b, c;
-    real lowest, highest;  // of the slice coordinates
+    real lowest, highest;      // of the slice coordinates
     bool perspective, behind;  // behind: some corner is not before the eye, nothing is monotonic
 } Samples;
 
@@ -81,7 +82,8 @@ static inline real sampled_column(real x, real w, uint size, float tangent) {
 }
 
 // First column in [least, most + 1] that the edge from a (q <= 0) to b (q > 0) does not cross.
-static inline int sampled_threshold(const vitrail_GridDesc* grid, bool perspective, Sample a, real qa, Sample b, real qb, int least, int most) {
+static inline int sampled_threshold(const vitrail_GridDesc* grid, bool perspective, Sample a, real qa, Sample b, real qb,
+                                    int least, int most) {
     real at = a.x * qb - b.x * qa;
     if (perspective)
         at = (at / (a.w * qb - b.w * qa) / REAL(grid->extent.x) * REAL(0.5f) + REAL(0.5f)) * REAL(grid->size.x);
@@ -105,8 +107,8 @@ static inline int sampled_threshold(const vitrail_GridDesc* grid, bool perspecti
 }
 
 // The threshold of an edge in a row that it crosses.
-static inline int sampled_edge(const vitrail_GridDesc* grid, bool perspective, const Sample* a, real qa, const Sample* b, real qb, int least,
-                               int most) {
+static inline int sampled_edge(const vitrail_GridDesc* grid, bool perspective, const Sample* a, real qa, const Sample* b, real qb,
+                               int least, int most) {
     const bool up = qa <= REAL(0);
     return sampled_threshold(grid, perspective, up ? *a : *b, up ? qa : qb, up ? *b : *a, up ? qb : qa, least, most);
 }
@@ -116,7 +118,8 @@ static inline void sampled_rows(const vitrail_GridDesc* grid, const Samples* s, 
     const bool perspective = s->perspective;
     const real depth = REAL(grid->size.z);
     for (int y = yLeast; y <= yMost; ++y) {
-        const Seen q = sampled_seen(perspective, sampled_centre(perspective, y, grid->size.y, grid->extent.y), s->a.y, s->b.y, s->c.y, s);
+        const Seen q =
+            sampled_seen(perspective, sampled_centre(perspective, y, grid->size.y, grid->extent.y), s->a.y, s->b.y, s->c.y, s);
         const bool below[3] = {q.a <= REAL(0), q.b <= REAL(0), q.c <= REAL(0)};
         if (below[0] == below[1] && below[1] == below[2]) continue;
         int from = xLeast, to = xMost + 1;
@@ -141,7 +144,8 @@ static inline void sampled_rows(const vitrail_GridDesc* grid, const Samples* s, 
             to = max(one, two);
         }
         for (int x = from; x < to; ++x) {
-            const Seen r = sampled_seen(perspective, sampled_centre(perspective, x, grid->size.x, grid->extent.x), s->a.x, s->b.x, s->c.x, s);
+            const Seen r = sampled_seen(perspective, sampled_centre(perspective, x, grid->size.x, grid->extent.x), s->a.x, s->b.x,
+                                        s->c.x, s);
             if (s->behind && ((sampled_crosses(r.a, q.a, r.b, q.b) != sampled_crosses(r.b, q.b, r.c, q.c)) ==
                               sampled_crosses(r.c, q.c, r.a, q.a)))
                 continue;
@@ -191,7 +195,8 @@ static inline void sampled_triangle(const vitrail_GridDesc* grid, global const f
         by = sampled_column(by, s.b.w, grid->size.y, grid->extent.y);
         cy = sampled_column(cy, s.c.w, grid->size.y, grid->extent.y);
     }
-    const real xLow = fmin(ax, fmin(bx, cx)), xHigh = fmax(ax, fmax(bx, cx)), yLow = fmin(ay, fmin(by, cy)), yHigh = fmax(ay, fmax(by, cy));
+    const real xLow = fmin(ax, fmin(bx, cx)), xHigh = fmax(ax, fmax(bx, cx)), yLow = fmin(ay, fmin(by, cy)),
+               yHigh = fmax(ay, fmax(by, cy));
     if (!(s.highest >= REAL(0)) || !(s.lowest <= REAL(grid->size.z)) || !(xHigh >= REAL(0)) || !(xLow <= REAL(grid->size.x)) ||
         !(yHigh >= REAL(0)) || !(yLow <= REAL(grid->size.y))) {
         if (counting) atomic_inc(status + STATUS_OUTSIDE);
@@ -215,6 +220,7 @@ static inline void sampled_triangle(const vitrail_GridDesc* grid, global const f
 
 kernel void sampled_mark(const vitrail_GridDesc grid, MARK_PARAMETERS) {
     const Channels channels = MARK_CHANNELS;
-    MARK_EACH(triangle, block, sampled_triangle(&grid, positions, indices, vertexCount, triangle, block, bits, rank ? &channels : 0,
-                                            materials, tasks, taskCapacity, status))
+    MARK_EACH(triangle, block,
+              sampled_triangle(&grid, positions, indices, vertexCount, triangle, block, bits, rank ? &channels : 0, materials,
+                               tasks, taskCapacity, status))
 }

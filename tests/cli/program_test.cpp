@@ -88,8 +88,10 @@ TEST_F(Program, HelpNamesEveryMethodAndOption) {
     for (const vitrail::Method& method : vitrail::methods()) {
         if (method.family != vitrail::Family::surfaceVoxels) continue;
         EXPECT_NE(help.find(method.name), std::string::npos) << method.name;
-        for (const vitrail::MethodOption& option : method.options)
-            if (!option.name.empty()) EXPECT_NE(help.find("--" + std::string(option.name)), std::string::npos) << option.name;
+        for (const vitrail::MethodOption& option : method.options) {
+            if (option.name.empty()) continue;
+            EXPECT_NE(help.find("--" + std::string(option.name)), std::string::npos) << option.name;
+        }
     }
 }
 
@@ -122,9 +124,10 @@ TEST_F(Program, UnknownMethodListsWhatThereIs) {
     for (const std::string arguments : {"voxelize mesh.ply --method magic", "compare mesh.ply --methods magic"}) {
         const Result result = run(arguments);
         EXPECT_EQ(result.code, 2);
-        for (const vitrail::Method& method : vitrail::methods())
-            if (method.family == vitrail::Family::surfaceVoxels)
-                EXPECT_NE(result.err.find(method.name), std::string::npos) << result.err;
+        for (const vitrail::Method& method : vitrail::methods()) {
+            if (method.family != vitrail::Family::surfaceVoxels) continue;
+            EXPECT_NE(result.err.find(method.name), std::string::npos) << result.err;
+        }
     }
 }
 

@@ -1,8 +1,9 @@
 // Devices and their limits, memory and its pool.
+#include "tests/support/device.h"
+
 #include <gtest/gtest.h>
 #include <vitrail/core/error.h>
 
-#include "tests/support/device.h"
 #include "tests/support/variable.h"
 
 namespace vitrail {
@@ -73,7 +74,8 @@ TEST(Workspace, RefusesBeyondTheLimitAndTrimsBefore) {
     { const auto one = queue.workspace().take<char>(900 << 10, "one"); }
     const auto other = queue.workspace().take<char>(200 << 10, "another");
     EXPECT_LE(device.counters().deviceBytes, 1u << 20);
-    EXPECT_EQ(codeOf([&] { queue.workspace().take<char>(std::uint64_t(1) << 50, "more than any buffer"); }), ErrorCode::outOfMemory);
+    EXPECT_EQ(codeOf([&] { queue.workspace().take<char>(std::uint64_t(1) << 50, "more than any buffer"); }),
+              ErrorCode::outOfMemory);
 }
 
 TEST(Buffer, ReadsWhatWasWritten) {

@@ -54,15 +54,15 @@ TEST(Interop, VoxelizesTheCallersBuffersOnTheCallersQueue) {
         Queue queue = interop::queue(device, caller.queue);
         EXPECT_EQ(interop::context(device), caller.context);
         EXPECT_EQ(interop::commandQueue(queue), caller.queue);
-        const DeviceMesh own(interop::wrap<float>(positions, mesh.positions.size() * 3), interop::wrap<std::uint32_t>(indices, mesh.indices.size()),
-                             {}, {}, mesh.bounds());
+        const DeviceMesh own(interop::wrap<float>(positions, mesh.positions.size() * 3),
+                             interop::wrap<std::uint32_t>(indices, mesh.indices.size()), {}, {}, mesh.bounds());
         EXPECT_EQ(interop::handle(own.positions()), positions);
         const Voxels voxels = voxelize(queue, own, grid, Sampled{});
         EXPECT_EQ(device.counters().uploads, 0u);
         // The caller reads the bits behind the library's back.
         std::vector<std::uint32_t> words(expected.size());
-        EXPECT_EQ(clEnqueueReadBuffer(caller.queue, interop::handle(voxels.bits()), CL_TRUE, 0, words.size() * 4, words.data(), 0, nullptr,
-                                      nullptr),
+        EXPECT_EQ(clEnqueueReadBuffer(caller.queue, interop::handle(voxels.bits()), CL_TRUE, 0, words.size() * 4, words.data(), 0,
+                                      nullptr, nullptr),
                   CL_SUCCESS);
         EXPECT_EQ(words, expected);
         EXPECT_EQ(caller.references(positions), 2u);
@@ -88,7 +88,8 @@ TEST(Interop, WrappingChecksTheSize) {
 
 TEST(Interop, RefusesQueuesThatCannotServe) {
     for (const cl_command_queue_properties properties :
-         {cl_command_queue_properties(0), cl_command_queue_properties(CL_QUEUE_PROFILING_ENABLE | CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE)}) {
+         {cl_command_queue_properties(0),
+          cl_command_queue_properties(CL_QUEUE_PROFILING_ENABLE | CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE)}) {
         const Caller caller(properties);
         Device device = interop::device(caller.context, caller.device);
         try {

@@ -1,4 +1,5 @@
-// A row of the table of methods is a header, a host file, a kernel and a test with one stem, reachable by its name, and a line in README.md.
+// A row of the table of methods is a header, a host file, a kernel and a test with one stem, reachable by its name, and a line in
+// README.md.
 #include <gtest/gtest.h>
 #include <vitrail/methods.h>
 #include <vitrail/voxelize/voxelize.h>
@@ -76,7 +77,8 @@ TEST(MethodTable, OptionsAreThoseOfTheTypes) {
             [&](const auto& method) {
                 std::remove_cvref_t<decltype(method)>::visitOptions(method, [&](std::string_view name, const auto& value) {
                     fromType.insert(std::string(name));
-                    const auto found = std::find_if(row.options.begin(), row.options.end(), [&](const MethodOption& o) { return o.name == name; });
+                    const auto found = std::find_if(row.options.begin(), row.options.end(),
+                                                    [&](const MethodOption& o) { return o.name == name; });
                     ASSERT_NE(found, row.options.end()) << name;
                     EXPECT_EQ(static_cast<double>(value), found->byDefault) << name;
                 });

@@ -1,5 +1,5 @@
-// Runs the kernels on very small cases, for Oclgrind: it finds accesses out of bounds, races and misused calls, some thousand times slower
-// than a device. Prints what ran; the numbers are tested elsewhere.
+// Runs the kernels on very small cases, for Oclgrind: it finds accesses out of bounds, races and misused calls, some thousand
+// times slower than a device. Prints what ran; the numbers are tested elsewhere.
 #include <vitrail/core/error.h>
 #include <vitrail/light/boxes.h>
 #include <vitrail/light/glass.h>
@@ -18,12 +18,13 @@ int main() {
         std::printf("%s\n", test::device().info().name.c_str());
         const Uint3 size(9, 10, 34);
         Mesh mesh = test::soup(91, 12, size, 4);
-        test::addTriangle(mesh, {-3, 1, 1}, {90, 2, 30}, {1, 95, 3});    // over the upper faces
-        test::addTriangle(mesh, {2, 2, 2}, {2, 2, 2}, {5, 2, 2});        // without area
+        test::addTriangle(mesh, {-3, 1, 1}, {90, 2, 30}, {1, 95, 3});  // over the upper faces
+        test::addTriangle(mesh, {2, 2, 2}, {2, 2, 2}, {5, 2, 2});      // without area
         test::addTriangle(mesh, {50, 50, 50}, {51, 50, 50}, {50, 51, 50});
         // For the task lists: over more than 1024 columns, with an edge of more than 64 cells.
         const Grid wide = Grid::box(Float3(0), 1.0f, Uint3(40, 40, 8));
-        const Mesh large = test::triangles({{0.2f, 0.3f, 1}, {39, 1, 6}, {2, 38, 3}}), longer = test::triangles({{-60, 20, 1}, {8, 22, 4}, {8, 22.5f, 4}});
+        const Mesh large = test::triangles({{0.2f, 0.3f, 1}, {39, 1, 6}, {2, 38, 3}}),
+                   longer = test::triangles({{-60, 20, 1}, {8, 22, 4}, {8, 22.5f, 4}});
         for (const Precision precision : {Precision::best, Precision::single}) {
             const test::WithPrecision set(queue, precision);
             for (const Method& row : methods()) {
@@ -38,7 +39,8 @@ int main() {
                                 static_cast<unsigned long long>(voxels.occupied()));
                 }
                 const Voxels voxels = voxelize(queue, row.name == "points" ? longer : large, wide, method);
-                std::printf("%s, large: %llu voxels\n", voxels.report().method.c_str(), static_cast<unsigned long long>(voxels.occupied()));
+                std::printf("%s, large: %llu voxels\n", voxels.report().method.c_str(),
+                            static_cast<unsigned long long>(voxels.occupied()));
             }
         }
 

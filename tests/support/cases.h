@@ -16,11 +16,13 @@ struct Case {
 /// The generated shapes, each of a few thousand triangles at most.
 std::vector<Case> smallShapes();
 
-/// What breaks a voxelizer: corners and edges on cell faces and column centres, slivers, triangles edge-on, of zero area, smaller than a cell,
-/// larger than the grid and outside of it. All for a grid of unit cells whose low corner is the origin and whose size is `size`.
+/// What breaks a voxelizer: corners and edges on cell faces and column centres, slivers, triangles edge-on, of zero area, smaller
+/// than a cell, larger than the grid and outside of it. All for a grid of unit cells whose low corner is the origin and whose
+/// size is `size`.
 std::vector<Case> meanMeshes(Uint3 size);
 
-/// `count` random triangles over that grid and a little beyond, corners rounded to multiples of `step` (0: not at all), edges up to `reach`.
+/// `count` random triangles over that grid and a little beyond, corners rounded to multiples of `step` (0: not at all), edges up
+/// to `reach`.
 Mesh soup(std::uint64_t seed, unsigned count, Uint3 size, float reach, float step = 0);
 
 /// Appends one triangle with corners of its own.

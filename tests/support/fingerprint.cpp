@@ -38,9 +38,11 @@ std::string fingerprint(Queue& queue, const Mesh& mesh) {
             if (!row.cameraGrids) grids.erase(grids.begin() + 1, grids.end());
             grids.push_back(Grid::fit(bounds, 100));
             for (const Grid& grid : grids) {
-                const Voxels v = voxelize(queue, mesh, grid, voxelizerByName(row.name, {}, Channel::count | Channel::normal | Channel::material));
-                lines += std::string(row.name) + (precision == Precision::single ? " single " : " ") + grid.text() + ":" + hashOf(v.host().words) +
-                         hashOf(v.counts()) + hashOf(v.normalBuffer().read(queue)) + hashOf(v.materials()) + "\n";
+                const Voxels v = voxelize(queue, mesh, grid,
+                                          voxelizerByName(row.name, {}, Channel::count | Channel::normal | Channel::material));
+                lines += std::string(row.name) + (precision == Precision::single ? " single " : " ") + grid.text() + ":" +
+                         hashOf(v.host().words) + hashOf(v.counts()) + hashOf(v.normalBuffer().read(queue)) +
+                         hashOf(v.materials()) + "\n";
             }
         }
     }

@@ -8,8 +8,9 @@ namespace vitrail::test {
 
 namespace {
 
-/// Places, along a side of 0 to 1, of the points that an edge of `segments` adds between its ends, in the tessellator's order of growth: the
-/// middle of a half, its quarters, its eighths and so on, mirrored on the other half. Even edges have their middle beside.
+/// Places, along a side of 0 to 1, of the points that an edge of `segments` adds between its ends, in the tessellator's order of
+/// growth: the middle of a half, its quarters, its eighths and so on, mirrored on the other half. Even edges have their middle
+/// beside.
 std::vector<double> placesOf(int segments) {
     std::vector<double> places;
     for (int v = 1; v < segments / 2; ++v) {
@@ -23,12 +24,11 @@ std::vector<double> placesOf(int segments) {
     return places;
 }
 
-
 /// Triangles between two rows of points. `segments` are those that decide the order, two more than the inner row has.
 void stitch(const std::vector<Double3>& outer, const std::vector<Double3>& inner, int outerSegments, int innerSegments,
             std::vector<MicroTriangle>& out) {
-    // Steps along the rows by place; 1 is a step of the inner row, 0 and 2 of the outer one. At one place the inner row steps first in the
-    // first half and in the middle, last in the second half. The corner places 0 and 1 belong to the outer row.
+    // Steps along the rows by place; 1 is a step of the inner row, 0 and 2 of the outer one. At one place the inner row steps
+    // first in the first half and in the middle, last in the second half. The corner places 0 and 1 belong to the outer row.
     std::vector<std::pair<double, int>> steps;
     for (const double place : placesOf(outerSegments)) steps.emplace_back(place, place < 0.5 ? 2 : 0);
     for (const double place : placesOf(innerSegments)) steps.emplace_back(place, 1);
@@ -75,8 +75,8 @@ std::vector<MicroTriangle> tessellate(std::array<int, 3> edges, int inside) {
         const auto outer = ring(k), inner = ring(k + 1);
         for (int e = 0; e < 3; ++e) {
             const int segments = k == 0 ? edges[e] : inside - 2 * k;
-            stitch(row(outer[e], outer[(e + 1) % 3], segments), row(inner[e], inner[(e + 1) % 3], inside - 2 * k - 2), segments, inside - 2 * k,
-                   out);
+            stitch(row(outer[e], outer[(e + 1) % 3], segments), row(inner[e], inner[(e + 1) % 3], inside - 2 * k - 2), segments,
+                   inside - 2 * k, out);
         }
     }
     if (inside % 2) out.push_back(ring((inside - 1) / 2));

@@ -1,5 +1,5 @@
-// tests/support/tessellator.h: the tessellation pattern of points.h, made of vertices and triangles rather than enumerated: rings of points
-// as the OpenGL 4.6 specification, 11.2.2.1, describes them, stitched in the order of Direct3D 11.
+// tests/support/tessellator.h: the tessellation pattern of points.h, made of vertices and triangles rather than enumerated: rings
+// of points as the OpenGL 4.6 specification, 11.2.2.1, describes them, stitched in the order of Direct3D 11.
 #pragma once
 #include <vitrail/core/vector.h>
 

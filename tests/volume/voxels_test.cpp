@@ -15,7 +15,8 @@ namespace {
 using test::queue;
 
 Voxels torus(Uint3 size, Channel channels = Channel::none) {
-    const Mesh mesh = test::closedTorus(Float3(size) * 0.5f, float(size.x) * 0.3f, float(size.x) * 0.1f, Float3(0.5f, 1, 2), 24, 12);
+    const Mesh mesh =
+        test::closedTorus(Float3(size) * 0.5f, float(size.x) * 0.3f, float(size.x) * 0.1f, Float3(0.5f, 1, 2), 24, 12);
     return voxelize(queue(), mesh, Grid::box(Float3(0), 1.0f, size), Conservative{.channels = channels});
 }
 
@@ -45,12 +46,14 @@ TEST(Voxels, MipHoldsCubesOfEight) {
     for (std::uint32_t z = 0; z < 70; ++z)
         for (std::uint32_t y = 0; y < 60; ++y)
             for (std::uint32_t x = 0; x < 50; ++x)
-                if (voxels.host().at(x, y, z)) expected[grid.wordIndex(x, y, z) / VITRAIL_WORDS_PER_TILE] |= std::uint8_t(1u << ((z & 31) / 8));
+                if (voxels.host().at(x, y, z))
+                    expected[grid.wordIndex(x, y, z) / VITRAIL_WORDS_PER_TILE] |= std::uint8_t(1u << ((z & 31) / 8));
     EXPECT_EQ(mip, expected);
 }
 
 TEST(Voxels, BitsOutsideTheGridAreZero) {
-    const Mesh mesh = test::triangles({{-90, -90, 4.5f}, {200, -90, 4.5f}, {-90, 200, 4.5f}, {3.3f, -90, -90}, {3.3f, 200, -90}, {3.3f, -90, 200}});
+    const Mesh mesh = test::triangles(
+        {{-90, -90, 4.5f}, {200, -90, 4.5f}, {-90, 200, 4.5f}, {3.3f, -90, -90}, {3.3f, 200, -90}, {3.3f, -90, 200}});
     const Uint3 size(9, 11, 33);
     const Voxels voxels = voxelize(queue(), mesh, Grid::box(Float3(0), 1.0f, size), Conservative{});
     std::uint64_t inside = 0;
@@ -107,8 +110,8 @@ TEST(Voxels, HostAccessIsKept) {
     EXPECT_EQ(queue().counters().readBacks, before);
 }
 
-// Two coordinates of 16 bits: 1 / 32767 apart, half of it rounded away along each of two axes, at most 1.5 times longer on the sphere (at the
-// octahedron's faces' middles) and as much for the fold: 0.004 degrees.
+// Two coordinates of 16 bits: 1 / 32767 apart, half of it rounded away along each of two axes, at most 1.5 times longer on the
+// sphere (at the octahedron's faces' middles) and as much for the fold: 0.004 degrees.
 TEST(Normals, SurvivePacking) {
     test::Random random(81);
     double worst = 0;
@@ -122,7 +125,8 @@ TEST(Normals, SurvivePacking) {
         worst = std::max(worst, glm::length(glm::cross(Double3(n), back)));
     }
     EXPECT_LE(std::asin(worst) * 180 / 3.14159265358979, 0.004);
-    for (const Float3 axis : {Float3(1, 0, 0), Float3(-1, 0, 0), Float3(0, 1, 0), Float3(0, -1, 0), Float3(0, 0, 1), Float3(0, 0, -1)})
+    for (const Float3 axis :
+         {Float3(1, 0, 0), Float3(-1, 0, 0), Float3(0, 1, 0), Float3(0, -1, 0), Float3(0, 0, 1), Float3(0, 0, -1)})
         EXPECT_EQ(unpackNormal(packNormal(axis)), axis);
     EXPECT_EQ(packNormal(Float3(0)), 0u);
 }
@@ -130,8 +134,8 @@ TEST(Normals, SurvivePacking) {
 // A flat plate seen from both sides: the mean of opposite normals vanishes, and its code is 0.
 TEST(Normals, OppositeOnesVanish) {
     const Float3 a(1.1f, 1.2f, 4.4f), b(6.3f, 1.3f, 4.4f), c(1.7f, 6.1f, 4.4f);
-    const Voxels voxels =
-        voxelize(queue(), test::triangles({a, b, c, a, c, b}), Grid::box(Float3(0), 1.0f, Uint3(8)), Conservative{.channels = Channel::normal});
+    const Voxels voxels = voxelize(queue(), test::triangles({a, b, c, a, c, b}), Grid::box(Float3(0), 1.0f, Uint3(8)),
+                                   Conservative{.channels = Channel::normal});
     for (const std::uint32_t code : voxels.normalBuffer().read(queue())) EXPECT_EQ(code, 0u);
 }
 

@@ -32,7 +32,8 @@ void expectTruth(const Mesh& mesh, const Grid& grid, const std::string& name) {
 
 TEST(Conservative, IsTheTruthOnShapes) {
     for (const test::Case& one : test::smallShapes()) {
-        for (const unsigned longest : {1u, 31u, 32u, 33u, 64u, 128u}) expectTruth(one.mesh, Grid::fit(one.mesh.bounds(), longest), one.name);
+        for (const unsigned longest : {1u, 31u, 32u, 33u, 64u, 128u})
+            expectTruth(one.mesh, Grid::fit(one.mesh.bounds(), longest), one.name);
         expectTruth(one.mesh, test::cameraGrids(one.mesh.bounds(), {50, 37, 70})[0], one.name + ", orthographic");
     }
 }
@@ -94,9 +95,9 @@ double distanceTo(const Mesh& mesh, const Grid& grid, Uint3 cell, double most) {
     return high;
 }
 
-// Vertices are off by delta = N 2^-23 at most, N being the grid's longest axis or the farthest coordinate. An edge of length s may then turn by
-// delta / s, which lets in cells up to 16 delta / s further, with what the other bounds add; but no farther than s, since they lie
-// in the triangle's box. The worst of both is s = 4 sqrt(delta).
+// Vertices are off by delta = N 2^-23 at most, N being the grid's longest axis or the farthest coordinate. An edge of length s
+// may then turn by delta / s, which lets in cells up to 16 delta / s further, with what the other bounds add; but no farther than
+// s, since they lie in the triangle's box. The worst of both is s = 4 sqrt(delta).
 void expectSingleBound(const Mesh& mesh, const Grid& grid, const std::string& name) {
     const reference::Truth truth = reference::conservative(mesh, grid);
     const Voxels got = voxelize(queue(), mesh, grid, Conservative{});
@@ -114,9 +115,11 @@ void expectSingleBound(const Mesh& mesh, const Grid& grid, const std::string& na
 TEST(Conservative, SinglePrecisionMissesNothing) {
     const test::WithPrecision single(queue(), Precision::single);
     for (const test::Case& one : test::smallShapes())
-        for (const unsigned longest : {1u, 32u, 128u}) expectSingleBound(one.mesh, Grid::fit(one.mesh.bounds(), longest), one.name);
+        for (const unsigned longest : {1u, 32u, 128u})
+            expectSingleBound(one.mesh, Grid::fit(one.mesh.bounds(), longest), one.name);
     for (const Uint3 size : {Uint3(1), Uint3(31, 33, 32), Uint3(9, 70, 100)})
-        for (const test::Case& one : test::meanMeshes(size)) expectSingleBound(one.mesh, Grid::box(Float3(0), 1.0f, size), one.name);
+        for (const test::Case& one : test::meanMeshes(size))
+            expectSingleBound(one.mesh, Grid::box(Float3(0), 1.0f, size), one.name);
 }
 
 TEST(Conservative, RefusesPerspectiveGrids) {

@@ -1,8 +1,9 @@
 // Prints the device's compute units, then the fingerprint: run by same_bits_test.cpp with another number of threads.
+#include "tests/support/fingerprint.h"
+
 #include <cstdio>
 
 #include "tests/support/device.h"
-#include "tests/support/fingerprint.h"
 
 int main() {
     using namespace vitrail;

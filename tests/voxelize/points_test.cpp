@@ -6,6 +6,8 @@
 #include <vitrail/voxelize/points.h>
 #include <vitrail/voxelize/sampled.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -39,7 +41,8 @@ TEST(Tessellator, FillsTheTriangleOnce) {
         for (int& e : edges) e = 1 + static_cast<int>(random.bits() % most);
         const int inside = 1 + static_cast<int>(random.bits() % most);
         const auto pattern = test::tessellate(edges, inside);
-        ASSERT_EQ(pattern.size(), formula(edges, inside)) << edges[0] << " " << edges[1] << " " << edges[2] << " inside " << inside;
+        ASSERT_EQ(pattern.size(), formula(edges, inside))
+            << edges[0] << " " << edges[1] << " " << edges[2] << " inside " << inside;
         double area = 0;
         for (const test::MicroTriangle& t : pattern) {
             ASSERT_GT(std::abs(areaOf(t)), 0);
@@ -67,12 +70,14 @@ Counts expectedCounts(const Mesh& mesh, const Grid& grid, double safetyFactor) {
         for (int k = 0; k < 3; ++k) corners[k] = grid.toVoxel(mesh.positions[mesh.indices[3 * t + k]]);
         for (const Double3& p : test::pointsOf(corners, safetyFactor))
             if (p.x >= 0 && p.y >= 0 && p.z >= 0 && p.x <= size.x && p.y <= size.y && p.z <= size.z)
-                ++counts[{std::min(unsigned(p.x), size.x - 1), std::min(unsigned(p.y), size.y - 1), std::min(unsigned(p.z), size.z - 1)}];
+                ++counts[{std::min(unsigned(p.x), size.x - 1), std::min(unsigned(p.y), size.y - 1),
+                          std::min(unsigned(p.z), size.z - 1)}];
     }
     return counts;
 }
 
-// The device enumerates what the pattern has, voxel by voxel: triangles below a cell, of few cells, above 64 cells (halved), partly outside.
+// The device enumerates what the pattern has, voxel by voxel: triangles below a cell, of few cells, above 64 cells (halved),
+// partly outside.
 TEST(Points, AreTheCentroidsOfTheTessellation) {
     const Uint3 size(40, 33, 70);
     const Grid box = Grid::box(Float3(0), 1.0f, size), ortho = test::cameraGrids({Float3(0), Float3(size)}, size)[0];
@@ -80,7 +85,8 @@ TEST(Points, AreTheCentroidsOfTheTessellation) {
         unsigned triangles;
         float reach, safetyFactor;
     };
-    for (const Run& run : {Run{300, 0.7f, 1}, Run{300, 3, 1}, Run{100, 20, 1}, Run{100, 5, 2.5f}, Run{60, 12, 0.3f}, Run{6, 150, 1}, Run{3, 40, 8}})
+    for (const Run& run : {Run{300, 0.7f, 1}, Run{300, 3, 1}, Run{100, 20, 1}, Run{100, 5, 2.5f}, Run{60, 12, 0.3f},
+                           Run{6, 150, 1}, Run{3, 40, 8}})
         for (const Grid& grid : {box, ortho}) {
             const Mesh mesh = test::soup(run.triangles + 7, run.triangles, size, run.reach);
             const Voxels got =
@@ -141,7 +147,8 @@ TEST(Points, NeverMarkACellThatNoTriangleTouches) {
         for (const float gamma : {0.25f, 1.0f, 5.0f}) expectNoExtra(one.mesh, Grid::fit(one.mesh.bounds(), 33), one.name, gamma);
 }
 
-// In single precision a corner is off by two roundings of a coordinate up to N and a point by two more: within 2^-21 N cells of its triangle.
+// In single precision a corner is off by two roundings of a coordinate up to N and a point by two more: within 2^-21 N cells of
+// its triangle.
 TEST(Points, SinglePrecisionStaysNearTheTriangle) {
     const test::WithPrecision single(queue(), Precision::single);
     for (const test::Case& one : test::smallShapes()) {
@@ -153,27 +160,46 @@ TEST(Points, SinglePrecisionStaysNearTheTriangle) {
     }
 }
 
-// Measured: at safety factor 1 up to 0.3 % of the thin surface, more only where parts are thinner than a cell; at 2 up to 0.01 %.
-TEST(Points, MissLittleOfTheThinSurface) {
-    std::uint64_t missing = 0, all = 0;
-    for (const test::Case& one : test::smallShapes()) {
-        const Grid grid = Grid::fit(one.mesh.bounds(), 64);
-        const reference::Truth thin = reference::thin(one.mesh, grid);
-        const VoxelDifference once = compareVoxels(voxelize(queue(), one.mesh, grid, Points{}).host(), thin.certain, thin.possible);
-        const VoxelDifference twice =
-            compareVoxels(voxelize(queue(), one.mesh, grid, Points{.safetyFactor = 2}).host(), thin.certain, thin.possible);
-        EXPECT_LE(twice.missing, once.missing) << one.name;
-        RecordProperty(one.name, std::to_string(100 * once.missingShare()) + " % at 1, " + std::to_string(100 * twice.missingShare()) + " % at 2");
-        missing += once.missing;
-        all += once.truth;
+/// Shares of the thin surface that are missing at safety factors 1 and 2.
+std::array<double, 2> missingOf(const Mesh& mesh, const Grid& grid) {
+    const reference::Truth thin = reference::thin(mesh, grid);
+    std::array<double, 2> shares;
+    for (const int gamma : {1, 2}) {
+        const Voxels got = voxelize(queue(), mesh, grid, Points{.safetyFactor = float(gamma)});
+        shares[gamma - 1] = compareVoxels(got.host(), thin.certain, thin.possible).missingShare();
     }
-    EXPECT_LE(double(missing), 0.003 * double(all));
+    return shares;
+}
+
+// The header's shares. The generated shapes are coarser than scans and have parts thinner than a cell: up to 0.6 % and, for a
+// tree, 1.3 %.
+TEST(Points, MissLittleOfTheThinSurface) {
+    for (const test::Case& one : test::smallShapes()) {
+        const auto [once, twice] = missingOf(one.mesh, Grid::fit(one.mesh.bounds(), 64));
+        EXPECT_LE(once, one.name == "tree" ? 0.015 : 0.006) << one.name;
+        EXPECT_LE(twice, one.name == "tree" ? 0.006 : 0.001) << one.name;
+    }
+}
+
+TEST(Points, MissLittleOfScans) {
+    for (const char* name : {"meshes/bun_zipper.ply", "meshes/dragon_vrip_res4.ply"}) {
+        const auto file = test::dataFile(name);
+        VITRAIL_NEEDS_DATA(file);
+        const Mesh mesh = test::readPlain(file);
+        const auto [once, twice] = missingOf(mesh, Grid::fit(mesh.bounds(), 128));
+        EXPECT_LE(once, 0.003) << name;
+        EXPECT_LE(twice, 0.0002) << name;
+    }
 }
 
 TEST(Points, SkipWhatIsTooLargeAndCountIt) {
     const Grid grid = Grid::box(Float3(0), 1.0f, Uint3(16));
-    const Mesh mesh = test::triangles({{-1e9f, -1e9f, 3}, {1e9f, -1e9f, 3}, {0, 1e9f, 3},            // an edge of more than 2^26 cells
-                                       {-1e6f, -1e6f, 3.5f}, {1e6f, -1e6f, 3.5f}, {0, 1e6f, 3.5f}});  // 2^20: tessellated where the grid is
+    const Mesh mesh = test::triangles({{-1e9f, -1e9f, 3},
+                                       {1e9f, -1e9f, 3},
+                                       {0, 1e9f, 3},  // an edge of more than 2^26 cells
+                                       {-1e6f, -1e6f, 3.5f},
+                                       {1e6f, -1e6f, 3.5f},
+                                       {0, 1e6f, 3.5f}});  // 2^20: tessellated where the grid is
     const Voxels got = voxelize(queue(), mesh, grid, Points{});
     EXPECT_EQ(got.report().skippedTriangles, 1u);
     EXPECT_EQ(got.occupied(), 256u);

@@ -1,4 +1,5 @@
-// The same bits: for any order of the triangles, any number of threads, twice, on several queues at once, and without 64-bit atomics.
+// The same bits: for any order of the triangles, any number of threads, twice, on several queues at once, and without 64-bit
+// atomics.
 #include <gtest/gtest.h>
 #include <vitrail/voxelize/voxelize.h>
 

@@ -62,8 +62,7 @@ public:
     void setLog(std::function<void(const std::string&)> log);
 
     Counters counters() const;
-    /// Folder of the program cache; empty when none can be written. On PoCL, whose own cache is cheaper, it holds programs only where
-    /// VITRAIL_CACHE_DIR names it.
+    /// Folder of the program cache; empty when none can be written.
     std::string cacheFolder() const;
 
     const std::shared_ptr<detail::DeviceState>& state() const { return state_; }

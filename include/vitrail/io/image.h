@@ -16,9 +16,14 @@ inline namespace v0 {
 Picture loadPicture(const std::filesystem::path& file);
 Picture loadPictureFromMemory(std::span<const std::byte> bytes, const std::string& name);
 
-/// .exr: linear, half floats. .png: tone-mapped (filmic curve of Hable 2010 after `exposure`, white point 4) to sRGB, 8 bit. Written
-/// under a temporary name and renamed. Throws Error (badFile).
-void savePicture(const std::filesystem::path& file, const Picture& picture, float exposure = 1.0f);
+enum class ToneCurve {
+    filmic,  ///< of Hable 2010, white point 4: for pictures of light
+    none,    ///< values as they are, cut to 0..1: for shares and colours that mean something
+};
+
+/// .exr: linear, half floats, exposure and curve left out. .png: values times `exposure` through the curve to sRGB, 8 bit. Written under a
+/// temporary name and renamed. Throws Error (badFile, badOption, unsupported).
+void savePicture(const std::filesystem::path& file, const Picture& picture, float exposure = 1.0f, ToneCurve curve = ToneCurve::filmic);
 
 }  // namespace v0
 }  // namespace vitrail

@@ -1,6 +1,6 @@
-// vitrail/voxelize/points.h: marks the voxels that hold the centroid of a micro-triangle: tessellate, one point each, scatter (Fei,
-// Wang & Chen 2012, section 3). Fast where triangles are smaller than voxels; misses part of the cells that a triangle only grazes
-// (use conservative.h when none may be missed).
+// vitrail/voxelize/points.h: marks the voxels that hold the centroid of a micro-triangle: tessellate, one point each, scatter
+// (Fei, Wang & Chen 2012, section 3). Fast where triangles are smaller than voxels; misses part of the cells that a triangle only
+// grazes (use conservative.h when none may be missed).
 #pragma once
 #include <string_view>
 
@@ -22,14 +22,14 @@ struct Points {
     }
 };
 
-/// Never a voxel that no triangle touches, ties of 1e-5 cell aside; in single precision a voxel lies within 2^-21 N cell of a triangle, N
-/// being the grid's longest axis. Missing at safetyFactor 1: up to 0.3 % of the thin surface of scanned meshes, most where edges are two to
-/// four cells long, more where parts are thinner than a cell; 7 to 23 % of Conservative. At 2 less than 0.02 % of the thin surface.
-/// Micro-triangles follow the Direct3D 11 tessellator for triangles (concentric rings, integer partitioning, factors to 64); a triangle
-/// whose factors exceed 64 is first halved at its edges, as often as it takes. A triangle with an edge of more than 2^26 / safetyFactor cells is
-/// skipped and counted as such. On perspective grids triangles are tessellated in world space, finer towards the eye.
-/// Channels combine points, not triangles: count is how many points lie in the voxel (Fei's additive blending), the normal a mean over
-/// them. Waits, memory and errors as voxelize(..., Conservative).
+/// Never a voxel that no triangle touches, ties of 1e-5 cell aside; in single precision a voxel lies within 2^-21 N cell of a
+/// triangle, N being the grid's longest axis. Missing at safetyFactor 1: up to 0.3 % of the thin surface of scanned meshes, most
+/// where edges are two to four cells long, more where parts are thinner than a cell; 7 to 23 % of Conservative. At 2 less than
+/// 0.02 % of the thin surface. Micro-triangles follow the Direct3D 11 tessellator for triangles (concentric rings, integer
+/// partitioning, factors to 64); a triangle whose factors exceed 64 is first halved at its edges, as often as it takes. A
+/// triangle with an edge of more than 2^26 / safetyFactor cells is skipped and counted as such. On perspective grids triangles
+/// are tessellated in world space, finer towards the eye. Channels combine points, not triangles: count is how many points lie in
+/// the voxel (Fei's additive blending), the normal a mean over them. Waits, memory and errors as voxelize(..., Conservative).
 Voxels voxelize(Queue& queue, const MeshInput& mesh, const Grid& grid, const Points& method);
 std::uint64_t estimate(const MeshInput& mesh, const Grid& grid, const Points& method);
 
