@@ -118,7 +118,7 @@ TEST(Obj, APolygonOfManyCorners) {
 class ObjMaterials : public testing::Test {
 protected:
     void SetUp() override {
-        folder_ = std::filesystem::path(testing::TempDir()) / "vitrail_obj_materials";
+        folder_ = std::filesystem::path(testing::TempDir()) / ("vitrail_obj_materials_" + std::to_string(::getpid()));
         std::filesystem::create_directories(folder_);
     }
     void TearDown() override { std::filesystem::remove_all(folder_); }

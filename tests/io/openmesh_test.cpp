@@ -117,7 +117,7 @@ TEST(OpenMesh, ReadsTheSameStl) {
 }
 
 TEST(OpenMesh, ReadsWhatSaveMeshWrites) {
-    const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "vitrail_openmesh.ply";
+    const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / ("vitrail_openmesh_" + std::to_string(::getpid()) + ".ply");
     Mesh mesh;
     mesh.positions = {{0, 0, 0}, {0.1f, 0, 0}, {0, 1e-30f, 0}, {3, 4, 5}};
     mesh.normals.assign(4, Float3(0, 0, 1));

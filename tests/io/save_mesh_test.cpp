@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 class SaveMesh : public testing::Test {
 protected:
     void SetUp() override {
-        folder_ = fs::path(testing::TempDir()) / "vitrail_save_mesh";
+        folder_ = fs::path(testing::TempDir()) / ("vitrail_save_mesh_" + std::to_string(::getpid()));
         fs::remove_all(folder_);
         fs::create_directories(folder_);
     }
