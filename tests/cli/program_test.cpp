@@ -263,6 +263,8 @@ TEST_F(Program, WrittenVoxelsScoreAsTheirMethod) {
 
 TEST_F(Program, InterruptEndsWithoutOutput) {
     makeMesh();
+    // Kernels are there then: while a driver compiles them, its own handler (LLVM's) ends the program, with the same code and no word.
+    ASSERT_EQ(run("compare mesh.ply -r 8 --repeats 1 --json").code, 0);
     const Result result = run("compare mesh.ply -r 256 --repeats 1000 --json", "timeout --preserve-status --signal=INT 3");
     EXPECT_EQ(result.code, 130) << result.err;
     EXPECT_EQ(result.out, "");
