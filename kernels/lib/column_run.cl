@@ -37,7 +37,7 @@ typedef struct {
 } Runs;
 
 // Edge from (v0, u0) to (v1, u1) of a projection whose inside is where  s ((v1 - v0) (u - u0) - (u1 - u0) (v - v0)) >= 0.
-static inline void run_edge(Bounds3* bounds, int edge, real v0, real u0, real v1, real u1, real s, real delta, real extents) {
+INLINE void run_edge(Bounds3* bounds, int edge, real v0, real u0, real v1, real u1, real s, real delta, real extents) {
     const real bu = (v1 - v0) * s, av = -(u1 - u0) * s;
     const real margin = REAL(8) * delta * (fabs(bu) + fabs(av)) + REAL(2) * delta * extents;
     // At the cell's corner that lies deepest inside, folded into the constant.
@@ -55,16 +55,16 @@ static inline void run_edge(Bounds3* bounds, int edge, real v0, real u0, real v1
     bounds->high[edge] = high;
 }
 
-static inline real run_low(const Bounds3* b, real v) {
+INLINE real run_low(const Bounds3* b, real v) {
     return real_max(b->low[0].slope * v + b->low[0].offset,
                 real_max(b->low[1].slope * v + b->low[1].offset, b->low[2].slope * v + b->low[2].offset));
 }
-static inline real run_high(const Bounds3* b, real v) {
+INLINE real run_high(const Bounds3* b, real v) {
     return real_min(b->high[0].slope * v + b->high[0].offset,
                 real_min(b->high[1].slope * v + b->high[1].offset, b->high[2].slope * v + b->high[2].offset));
 }
 
-static inline void run_projection(Bounds3* bounds, real v0, real u0, real v1, real u1, real v2, real u2, real s, real delta,
+INLINE void run_projection(Bounds3* bounds, real v0, real u0, real v1, real u1, real v2, real u2, real s, real delta,
                                   real extents) {
     run_edge(bounds, 0, v0, u0, v1, u1, s, delta, extents);
     run_edge(bounds, 1, v1, u1, v2, u2, s, delta, extents);
@@ -72,7 +72,7 @@ static inline void run_projection(Bounds3* bounds, real v0, real u0, real v1, re
 }
 
 // Cells along one axis that [least, most] meets; geometry exactly on the upper face belongs to the last. False when none.
-static inline bool run_extent(real least, real most, uint size, real delta, int* first, int* last, int axis, int* wide) {
+INLINE bool run_extent(real least, real most, uint size, real delta, int* first, int* last, int axis, int* wide) {
     if (!(most >= REAL(0)) || !(least <= REAL(size))) return false;
     *wide |= (floor(least - delta) != floor(most + delta) || most > REAL(size)) ? axis : 0;
     *first = (int)real_max(floor(least - delta), REAL(0));
@@ -82,7 +82,7 @@ static inline bool run_extent(real least, real most, uint size, real delta, int*
 }
 
 // The triangle's box of cells. False when it lies outside the grid.
-static inline bool run_box(const vitrail_GridDesc* grid, const Triangle* t, real delta, Runs* runs) {
+INLINE bool run_box(const vitrail_GridDesc* grid, const Triangle* t, real delta, Runs* runs) {
     const real slack = RUN_BOX_SLACK * delta;
     runs->wide = 0;
     return run_extent(real_min(t->a.x, real_min(t->b.x, t->c.x)), real_max(t->a.x, real_max(t->b.x, t->c.x)), grid->size.x, slack, &runs->xFirst,
@@ -94,13 +94,13 @@ static inline bool run_box(const vitrail_GridDesc* grid, const Triangle* t, real
 }
 
 // By how much the coordinates of the vertices may be off.
-static inline real run_delta(const vitrail_GridDesc* grid, const Triangle* t) {
+INLINE real run_delta(const vitrail_GridDesc* grid, const Triangle* t) {
     const real a = real_max(fabs(t->a.x), real_max(fabs(t->a.y), fabs(t->a.z))), b = real_max(fabs(t->b.x), real_max(fabs(t->b.y), fabs(t->b.z))),
                c = real_max(fabs(t->c.x), real_max(fabs(t->c.y), fabs(t->c.z)));
     return real_max(REAL(max(grid->size.x, max(grid->size.y, grid->size.z))), real_max(a, real_max(b, c))) * REAL_EPSILON;
 }
 
-static inline void run_bounds(const Triangle* t, real delta, Runs* runs) {
+INLINE void run_bounds(const Triangle* t, real delta, Runs* runs) {
     // A connected set whose box is one cell wide along two axes meets every cell along the third; of one that lies within one layer of cells,
     // those that its projection along the layer's axis meets.
     runs->byXY = (runs->wide & 3) == 3;
@@ -137,7 +137,7 @@ static inline void run_bounds(const Triangle* t, real delta, Runs* runs) {
 }
 
 // Cells of row y (a grid coordinate) between xLeast and xMost: first and last x, empty when first > last.
-static inline void run_row(const Runs* runs, int y, int xLeast, int xMost, int* first, int* last) {
+INLINE void run_row(const Runs* runs, int y, int xLeast, int xMost, int* first, int* last) {
     const real v = REAL(y - runs->yFirst), ox = REAL(runs->xFirst);
     *first = (int)ceil(real_max(run_low(&runs->xOfY, v), REAL(xLeast) - ox)) + runs->xFirst;
     *last = (int)floor(real_min(run_high(&runs->xOfY, v), REAL(xMost) - ox)) + runs->xFirst;

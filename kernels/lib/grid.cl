@@ -9,12 +9,12 @@ typedef struct {
     real x, y, z;
 } Point;
 
-static inline real point_axis(const Point d, const vitrail_float4 axis) {
+INLINE real point_axis(const Point d, const vitrail_float4 axis) {
     return d.x * REAL(axis.x) + d.y * REAL(axis.y) + d.z * REAL(axis.z);
 }
 
 // Voxel coordinates; a perspective grid gives x = y = 0 for points at or behind the eye, whose z is negative then.
-static inline Point grid_to_voxel(const vitrail_GridDesc* grid, float px, float py, float pz) {
+INLINE Point grid_to_voxel(const vitrail_GridDesc* grid, float px, float py, float pz) {
     const Point d = {REAL(px) - REAL(grid->origin.x), REAL(py) - REAL(grid->origin.y), REAL(pz) - REAL(grid->origin.z)};
     Point v;
     if (grid->kind == VITRAIL_GRID_BOX) {

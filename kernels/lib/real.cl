@@ -1,6 +1,7 @@
 // lib/real.cl: the number that decides a voxel: double, or float with -DVITRAIL_SINGLE. Nothing is contracted to fma.
 #ifndef VITRAIL_LIB_REAL
 #define VITRAIL_LIB_REAL
+#include "lib/inline.cl"
 #pragma OPENCL FP_CONTRACT OFF
 #ifdef VITRAIL_SINGLE
 typedef float real;
@@ -15,7 +16,7 @@ typedef double real;
 #define REAL(x) ((real)(x))
 
 // One instruction each, where fmin and fmax also have to mind NaN; where nothing is NaN they are the same.
-static inline real real_min(real a, real b) { return a < b ? a : b; }
-static inline real real_max(real a, real b) { return a > b ? a : b; }
+INLINE real real_min(real a, real b) { return a < b ? a : b; }
+INLINE real real_max(real a, real b) { return a > b ? a : b; }
 
 #endif

@@ -15,7 +15,7 @@ typedef struct {
 } Triangle;
 
 // The three vertices' offsets in the packed positions. False for an index past the vertices or a vertex that is not finite.
-static inline bool triangle_corners(global const float* positions, global const uint* indices, uint vertexCount, uint triangle, uint corner[3]) {
+INLINE bool triangle_corners(global const float* positions, global const uint* indices, uint vertexCount, uint triangle, uint corner[3]) {
     bool good = true;
     for (int k = 0; k < 3; ++k) {
         const uint i = indices[3 * (size_t)triangle + k];
@@ -27,20 +27,20 @@ static inline bool triangle_corners(global const float* positions, global const 
     return good;
 }
 
-static inline Point triangle_vertex(const vitrail_GridDesc* grid, global const float* positions, uint vertex) {
+INLINE Point triangle_vertex(const vitrail_GridDesc* grid, global const float* positions, uint vertex) {
     const size_t at = 3 * (size_t)vertex;
     return grid_to_voxel(grid, positions[at], positions[at + 1], positions[at + 2]);
 }
 
 // No area, in this arithmetic.
-static inline bool triangle_degenerate(const Triangle* t) {
+INLINE bool triangle_degenerate(const Triangle* t) {
     const real ux = t->b.x - t->a.x, uy = t->b.y - t->a.y, uz = t->b.z - t->a.z;
     const real vx = t->c.x - t->a.x, vy = t->c.y - t->a.y, vz = t->c.z - t->a.z;
     return uy * vz == uz * vy && uz * vx == ux * vz && ux * vy == uy * vx;
 }
 
 // Unit normal in world space from the winding; zero for a triangle of no area.
-static inline Point triangle_normal(global const float* p, const uint corner[3]) {
+INLINE Point triangle_normal(global const float* p, const uint corner[3]) {
     const size_t a = 3 * (size_t)corner[0], b = 3 * (size_t)corner[1], c = 3 * (size_t)corner[2];
     const real ux = REAL(p[b]) - REAL(p[a]), uy = REAL(p[b + 1]) - REAL(p[a + 1]), uz = REAL(p[b + 2]) - REAL(p[a + 2]);
     const real vx = REAL(p[c]) - REAL(p[a]), vy = REAL(p[c + 1]) - REAL(p[a + 1]), vz = REAL(p[c + 2]) - REAL(p[a + 2]);

@@ -4,7 +4,7 @@
 #pragma OPENCL FP_CONTRACT OFF
 
 // ORs a run of touched cells, or adds it to the channels.
-static inline void conservative_run(const vitrail_GridDesc* grid, int x, int y, int zFirst, int zLast, global uint* bits,
+INLINE void conservative_run(const vitrail_GridDesc* grid, int x, int y, int zFirst, int zLast, global uint* bits,
                                     const Channels* channels, const long normal[3], uint material, uint triangle) {
     const size_t word = bits_column(grid, (uint)x, (uint)y);
     if (!channels)
@@ -15,7 +15,7 @@ static inline void conservative_run(const vitrail_GridDesc* grid, int x, int y, 
 }
 
 // Every run of touched cells in columns [xLeast, xMost] x [yLeast, yMost].
-static inline void conservative_columns(const vitrail_GridDesc* grid, const Runs* runs, int xLeast, int xMost, int yLeast, int yMost,
+INLINE void conservative_columns(const vitrail_GridDesc* grid, const Runs* runs, int xLeast, int xMost, int yLeast, int yMost,
                                  global uint* bits, const Channels* channels, const long normal[3], uint material,
                                         uint triangle) {
     for (int y = yLeast; y <= yMost; ++y) {
@@ -47,7 +47,7 @@ static inline void conservative_columns(const vitrail_GridDesc* grid, const Runs
 }
 
 // One triangle, or one block of a big one (block >= 0). Returns without marking when it is not usable.
-static inline void conservative_triangle(const vitrail_GridDesc* grid, global const float* positions, global const uint* indices,
+INLINE void conservative_triangle(const vitrail_GridDesc* grid, global const float* positions, global const uint* indices,
                                   uint vertexCount, uint triangle, int block, global uint* bits, const Channels* channels,
                                   global const uint* materials, global uint2* tasks, uint taskCapacity, global uint* status) {
     uint corner[3];
