@@ -1,6 +1,7 @@
 // bench/voxelize.cpp: the family surfaceVoxels: every method of methods.h and the native lines, over meshes and resolutions, in turns. A
 // benchmark is <mesh>/<resolution>/<method>[/<option>=<value>]; its time is kernelMs (of a native line the call), and in the same record are
-// wallMs and the errors against the truth. Meshes: generated ones, and real ones where VITRAIL_DATA names a folder of them.
+// wallMs and, unless --times_only is given, the errors against the truth. Meshes: generated ones, and real ones where VITRAIL_DATA names a
+// folder of them; those with a number behind a plus sign were subdivided so many times.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -30,7 +31,7 @@ namespace {
 
 using namespace vitrail;
 
-constexpr std::uint32_t kResolutions[] = {64, 128, 256, 512};
+constexpr std::uint32_t kResolutions[] = {64, 128, 256, 512, 1024};
 /// Where a method's options are swept; elsewhere they have their defaults.
 constexpr std::uint32_t kSweepResolution = 256;
 
@@ -48,10 +49,17 @@ std::vector<Input> inputs() {
     shape("gyroid", {});
     shape("tree", {});
     shape("terrain", {"cells=256"});
-    if (const char* folder = std::getenv("VITRAIL_DATA"))
-        for (const char* file : {"teapot.ply", "bun_zipper.ply", "horse.ply", "turbineblade.ply", "dragon_vrip_res2.ply"})
-            if (const auto path = std::filesystem::path(folder) / "meshes" / file; std::filesystem::exists(path))
-                all.push_back({path.stem().string(), [path] { return load(path); }});
+    const char* folder = std::getenv("VITRAIL_DATA");
+    const auto file = [&](const char* name, unsigned times) {
+        if (folder == nullptr) return;
+        const auto path = std::filesystem::path(folder) / "meshes" / name;
+        if (!std::filesystem::exists(path)) return;
+        all.push_back({path.stem().string() + (times != 0 ? "+" + std::to_string(times) : ""),
+                       [=] { return times != 0 ? subdivide(load(path), times) : load(path); }});
+    };
+    for (const char* name : {"teapot.ply", "bun_zipper.ply", "horse.ply", "turbineblade.ply", "dragon_vrip_res2.ply"}) file(name, 0);
+    file("dragon_vrip_res2.ply", 1);  // 810,080 triangles
+    file("xyzrgb_dragon.obj", 4);     // 7.2 million
     return all;
 }
 
@@ -60,7 +68,9 @@ double milliseconds(std::chrono::steady_clock::duration d) { return std::chrono:
 /// The device, and what is made when first needed and kept: meshes on both sides, and the errors of every benchmark.
 class Bench {
 public:
-    Bench() : device_(Device::select()), queue_(device_) {}
+    explicit Bench(bool withoutErrors) : timesOnly(withoutErrors), device_(Device::select()), queue_(device_) {}
+
+    const bool timesOnly;
 
     struct Loaded {
         Mesh mesh;
@@ -125,11 +135,13 @@ struct Case {
 /// What both kinds of benchmark count beside their time.
 void addCounters(benchmark::State& state, Bench& bench, const Case& one, const Bench::Loaded& loaded, const Grid& grid, double wallMs,
                  double bytes) {
-    const benchmark::UserCounters& errors = bench.errors(one.group, one.name, loaded, grid);
-    state.counters.insert(errors.begin(), errors.end());
+    if (!bench.timesOnly) {
+        const benchmark::UserCounters& errors = bench.errors(one.group, one.name, loaded, grid);
+        state.counters.insert(errors.begin(), errors.end());
+        state.counters["bytesPerVoxel"] = bytes / std::max(1.0, errors.at("occupied").value);
+    }
     state.counters["triangles"] = static_cast<double>(loaded.mesh.triangleCount());
     state.counters["resolution"] = one.resolution;
-    state.counters["bytesPerVoxel"] = bytes / std::max(1.0, errors.at("occupied").value);
     state.counters["wallMs"] = wallMs / double(state.iterations());
 }
 
@@ -244,13 +256,14 @@ int main(int argc, char** argv) {
     std::vector<std::string> words{argv[0], "--benchmark_repetitions=5", "--benchmark_enable_random_interleaving=true",
                                    "--benchmark_report_aggregates_only=true", "--benchmark_min_time=0.1"};
     words.insert(words.end(), argv + 1, argv + argc);
+    const bool timesOnly = std::erase(words, "--times_only") != 0;
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     int count = static_cast<int>(arguments.size());
     benchmark::Initialize(&count, arguments.data());
     if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 2;
     try {
-        Bench bench;
+        Bench bench(timesOnly);
         const std::vector<Input> meshes = inputs();
         addAll(bench, meshes);
         const cli::Json machine = cli::machineRecord(bench.deviceInfo());

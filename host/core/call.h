@@ -52,7 +52,12 @@ public:
     /// Runs a kernel of lib/range.cl over `count` elements: its last two arguments, (ulong count, uint perItem), are appended here.
     template <class... Args>
     void launchRange(const Program& program, const char* kernel, std::uint64_t count, const Args&... args) {
-        const Spread spread = spreadOver(count);
+        launchRangeOf(1, program, kernel, count, args...);
+    }
+    /// The same for a kernel that works on `together` elements at a time: perItem is a multiple of it.
+    template <class... Args>
+    void launchRangeOf(std::uint32_t together, const Program& program, const char* kernel, std::uint64_t count, const Args&... args) {
+        const Spread spread = spreadOver(count, together);
         launch(program, kernel, (count + spread.perItem - 1) / spread.perItem, spread.local, args..., count, spread.perItem);
     }
     /// Work-groups that take part in a launch of which each takes several tasks.
@@ -74,7 +79,7 @@ private:
     struct Spread {
         std::uint32_t perItem, local;
     };
-    Spread spreadOver(std::uint64_t count) const;
+    Spread spreadOver(std::uint64_t count, std::uint32_t together) const;
     void* beginLaunch(const Program& program, const char* kernel);
     void endLaunch(void* handle, const char* kernel, std::uint64_t count, std::uint32_t local);
     void setBytes(void* handle, std::uint32_t index, const void* value, std::size_t bytes);

@@ -189,12 +189,12 @@ void Call::step(const char* step, double fraction) {
 
 std::uint32_t Call::taskGroups() const { return std::max(64u, 32u * queue_.state()->device->info.computeUnits); }
 
-Call::Spread Call::spreadOver(std::uint64_t count) const {
+Call::Spread Call::spreadOver(std::uint64_t count, std::uint32_t together) const {
     const DeviceInfo& info = queue_.state()->device->info;
-    if (!info.cpu) return {1, 64};
+    if (!info.cpu) return {together, 64};
     // Long enough runs to pay for a work-group (25 ns on PoCL), short enough for every unit to get many.
     const std::uint64_t share = count / (16ull * std::max(1u, info.computeUnits));
-    return {static_cast<std::uint32_t>(std::clamp<std::uint64_t>(share, 1, 64)), 1};
+    return {(static_cast<std::uint32_t>(std::clamp<std::uint64_t>(share, 1, 64)) + together - 1) / together * together, 1};
 }
 
 void* Call::beginLaunch(const Program& which, const char* kernel) {

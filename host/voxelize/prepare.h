@@ -33,6 +33,9 @@ std::string checkOptions(const M& method) {
     return text;
 }
 
+/// Triangles that kernels work on together (LANES of kernels/lib/lanes.cl).
+inline constexpr std::uint32_t kLanes = 8;
+
 /// A task list that triangles too large for one work-item go to; when it is full they are done where they are met.
 inline constexpr std::uint32_t kTaskCapacity = 65536;
 struct Task {
@@ -90,7 +93,7 @@ void launchMark(Pass& pass, const char* method, const MarkChannels* channels, co
             first, groups);
     };
     forTriangles(pass, step.c_str(), channels != nullptr, [&](std::uint32_t first, std::uint32_t count) {
-        launch(first, 0u, [&](const char* name, const auto&... args) { pass.call.launchRange(pass.program, name, count, args...); });
+        launch(first, 0u, [&](const char* name, const auto&... args) { pass.call.launchRangeOf(kLanes, pass.program, name, count, args...); });
     });
     const std::uint32_t groups = pass.call.taskGroups();
     launch(0u, groups, [&](const char* name, const auto&... args) {

@@ -4,6 +4,15 @@
 #include "layout/grid.h"
 #include "lib/inline.cl"
 #pragma OPENCL FP_CONTRACT OFF
+#ifdef cl_khr_int64_extended_atomics
+#pragma OPENCL EXTENSION cl_khr_int64_extended_atomics : enable
+#endif
+
+#ifdef VITRAIL_OCLGRIND  // takes a look at a word that others set for a race
+#define BITS_LOOK false
+#else
+#define BITS_LOOK true
+#endif
 
 // Index of the word that holds slices 0 to 31 of column (x, y); the next 32 slices are VITRAIL_WORDS_PER_TILE words further.
 INLINE size_t bits_column(const vitrail_GridDesc* grid, uint x, uint y) {
@@ -17,12 +26,37 @@ INLINE size_t bits_word(const vitrail_GridDesc* grid, uint x, uint y, uint z) {
 // Bits `first` to `last` of a word, 0 <= first <= last <= 31.
 INLINE uint bits_mask(uint first, uint last) { return (0xffffffffu << first) & (0xffffffffu >> (31u - last)); }
 
-// Sets slices zFirst to zLast of a column.
+// Bits of slices [first, end) in the words that begin at slice 0, eight at a time; none where first >= end.
+INLINE uint8 bits_masks(int8 first, int8 end) {
+    const int8 from = max(first, (int8)(0)), to = min(end, (int8)(32));
+    const uint8 ones = (uint8)(0xffffffffu);
+    return (ones << as_uint8(from & 31)) & (ones >> as_uint8(-to & 31)) & as_uint8(from < to);
+}
+
+// ORs eight neighbours, the words of a row of a tile. `often`: most of these bits are likely to be there; looking costs less than an
+// atomic then. What it sees may be old: bits only ever appear.
+INLINE void bits_set_row(global uint* words, uint8 mask, bool often) {
+    if (BITS_LOOK && often) mask &= ~*(const global uint8*)words;
+#ifdef cl_khr_int64_extended_atomics
+    volatile global ulong* pairs = (volatile global ulong*)words;
+    const ulong4 two = as_ulong4(mask);
+    if (two.s0 != 0ul) atom_or(pairs, two.s0);
+    if (two.s1 != 0ul) atom_or(pairs + 1, two.s1);
+    if (two.s2 != 0ul) atom_or(pairs + 2, two.s2);
+    if (two.s3 != 0ul) atom_or(pairs + 3, two.s3);
+#else
+    for (int i = 0; i < 8; ++i)
+        if (((uint*)&mask)[i] != 0u) atomic_or(words + i, ((uint*)&mask)[i]);
+#endif
+}
+
+// Sets slices zFirst to zLast of a column, most of which are likely to be there.
 INLINE void bits_set_run(global uint* bits, size_t column, uint zFirst, uint zLast) {
     const uint wFirst = zFirst >> 5, wLast = zLast >> 5;
     for (uint w = wFirst; w <= wLast; ++w) {
         const uint mask = bits_mask(w == wFirst ? (zFirst & 31u) : 0u, w == wLast ? (zLast & 31u) : 31u);
-        atomic_or(bits + column + (size_t)w * VITRAIL_WORDS_PER_TILE, mask);
+        global uint* word = bits + column + (size_t)w * VITRAIL_WORDS_PER_TILE;
+        if (!BITS_LOOK || (*word & mask) != mask) atomic_or(word, mask);
     }
 }
 

@@ -1,146 +1,173 @@
 // lib/column_run.cl: the cells that a triangle touches, as runs along z, column by column (Schwarz & Seidel 2010, section 3: the
-// triangle's box, its plane, and the edge functions of its three projections decide a cell; each is a half-line along z).
+// triangle's box, its plane, and the edge functions of its three projections decide a cell; each bounds z, or x, from both sides by a
+// function linear in the others). Eight triangles are set up together, a lane each; then eight columns of one are evaluated together.
 //
-// Coordinates are local to the low cell of the triangle's box, so that small triangles keep their digits. Every bound moves
-// outward by what its rounding may have lost, so that a cell touched is never left out: with vertices off by at most `delta` (two
-// roundings of coordinates up to N, or beyond the grid) an edge function a x + b y + c is off by at most (|a| + |b|) 8 delta + 2
-// delta (extents), the plane likewise.
+// Whatever its slope, a line bounds the triangle once its offset is taken over all three vertices: a slope that rounding has spoilt,
+// as a sliver's, loses no cell. Beyond that a bound moves outward by 8 delta (1 + |slope|), where delta is what a coordinate may be
+// off by: two roundings in making it; at most six more, of numbers up to the largest coordinate times 1 + |slope|, in offset and bound.
+// Coordinates are local to the low cell of the triangle's box, so that small triangles keep their digits.
 #ifndef VITRAIL_LIB_COLUMN_RUN
 #define VITRAIL_LIB_COLUMN_RUN
+#include "lib/lanes.cl"
 #include "lib/triangle.cl"
 #pragma OPENCL FP_CONTRACT OFF
 
-#define RUN_FAR REAL(1e30f)
 #ifdef VITRAIL_SINGLE
 #define RUN_BOX_SLACK REAL(1)
 #else
 #define RUN_BOX_SLACK REAL(0)  // a vertex on a cell face stays with the upper cell: a tie either way
 #endif
 
-// One half-line along u for a cell at v: u >= slope v + offset, or u <= slope v + offset; absent ones cannot bind.
-typedef struct {
-    real slope, offset;
-} Bound;
+// Bits of a lane's state; none: nothing to do.
+#define RUN_INSIDE 1      // in the grid, at least in part
+#define RUN_OUTSIDE 2
+#define RUN_SKIPPED 4     // an index past the vertices, or a vertex that is not finite
+#define RUN_DEGENERATE 8  // no area; marked all the same
+#define RUN_CLIPPED 16    // the grid cuts its box along x or y
 
+// u at v lies between the greater of low + lowSlope v and the lesser of high + highSlope v, the latter exclusive.
 typedef struct {
-    Bound low[3], high[3];
-} Bounds3;
+    real8 lowSlope[2], low[2], highSlope[2], high[2];
+} Bounds;
 
+// Eight triangles.
 typedef struct {
-    int xFirst, xLast, yFirst, yLast, zFirst, zLast;  // the triangle's box in cells of the grid
-    int wide;                                         // bit per axis (x 1, y 2, z 4): the triangle is not within one cell along it
-    bool byXY, byYZ, byZX;                            // which projections a cell of the box has to meet
-    Bounds3 xOfY;                                     // from the xy projection: x for a row y
-    Bounds3 zOfY;                                     // from the yz projection
-    Bounds3 zOfX;                                     // from the zx projection
-    real planeX, planeY, planeLow, planeHigh;         // z between planeX x + planeY y + planeLow and ... + planeHigh
+    int8 state;
+    int8 first[3], last[3];  // box in cells of the grid
+    Bounds xOfY, zOfY, zOfX;
+    real8 planeX, planeY, planeLow, planeHigh;  // z at (x, y) between planeLow + planeX x + planeY y and planeHigh + ..., exclusive
 } Runs;
 
-// Edge from (v0, u0) to (v1, u1) of a projection whose inside is where  s ((v1 - v0) (u - u0) - (u1 - u0) (v - v0)) >= 0.
-INLINE void run_edge(Bounds3* bounds, int edge, real v0, real u0, real v1, real u1, real s, real delta, real extents) {
-    const real bu = (v1 - v0) * s, av = -(u1 - u0) * s;
-    const real margin = REAL(8) * delta * (fabs(bu) + fabs(av)) + REAL(2) * delta * extents;
-    // At the cell's corner that lies deepest inside, folded into the constant.
-    const real c = -(bu * u0 + av * v0) + real_max(bu, REAL(0)) + real_max(av, REAL(0)) + margin;
-    Bound low = {REAL(0), -RUN_FAR}, high = {REAL(0), RUN_FAR};
-    // An edge parallel to u binds nothing that the triangle's box does not.
-    if (fabs(bu) > REAL_PARALLEL * fabs(av)) {
-        const Bound line = {-av / bu, -c / bu};
-        if (bu > REAL(0))
-            low = line;
-        else
-            high = line;
+// A line of slope `slope` by the triangle's corners (v, u): its lowest offset for the near corners of cells, its highest for the far.
+INLINE void run_line(real8 slope, const real8 v[3], const real8 u[3], real8 margin, real8* low, real8* high) {
+    const real8 a = fma(-slope, v[0], u[0]), b = fma(-slope, v[1], u[1]), c = fma(-slope, v[2], u[2]);
+    const real8 out = fma(margin, fabs(slope), margin);
+    *low = lanes_min3(a, b, c) + lanes_min(slope, LANES_OF(0)) - out;
+    *high = lanes_max3(a, b, c) + lanes_max(slope, LANES_OF(0)) + (out + LANES_OF(1));
+}
+
+// The projection with corners (v, u), in ascending order of v. `inverse`: of v[2] - v[0], v[1] - v[0], v[2] - v[1].
+INLINE void run_projection(Bounds* bounds, const real8 v[3], const real8 u[3], const real8 inverse[3], real8 margin) {
+    const real8 along = (u[2] - u[0]) * inverse[0], first = (u[1] - u[0]) * inverse[1], second = (u[2] - u[1]) * inverse[2];
+    real8 alongLow, alongHigh, firstLow, firstHigh, secondLow, secondHigh;
+    run_line(along, v, u, margin, &alongLow, &alongHigh);
+    run_line(first, v, u, margin, &firstLow, &firstHigh);
+    run_line(second, v, u, margin, &secondLow, &secondHigh);
+    // The edge over all of v bounds one side; the other two that where the vertex between them lies.
+    const real8 beyond = fma(along, v[1] - v[0], u[0]);
+    bounds->lowSlope[0] = u[1] > beyond ? along : first;
+    bounds->low[0] = u[1] > beyond ? alongLow : firstLow;
+    bounds->lowSlope[1] = u[1] > beyond ? along : second;
+    bounds->low[1] = u[1] > beyond ? alongLow : secondLow;
+    bounds->highSlope[0] = u[1] > beyond ? first : along;
+    bounds->high[0] = u[1] > beyond ? firstHigh : alongHigh;
+    bounds->highSlope[1] = u[1] > beyond ? second : along;
+    bounds->high[1] = u[1] > beyond ? secondHigh : alongHigh;
+}
+
+// Inverses of the differences of corners in order; 0 for an edge along which u is bound by nothing but the box.
+INLINE void run_inverses(const real8 v[3], real8 inverse[3]) {
+    const real8 d[3] = {v[2] - v[0], v[1] - v[0], v[2] - v[1]};
+    for (int e = 0; e < 3; ++e) inverse[e] = d[e] > LANES_OF(REAL_PARALLEL) ? LANES_OF(1) / d[e] : LANES_OF(0);
+}
+
+INLINE void run_swap(real8 less, real8 more, real8* a, real8* b) {
+    const real8 p = *a, q = *b;
+    *a = more < less ? q : p;
+    *b = more < less ? p : q;
+}
+
+// Puts corners i and j in order of v, with what belongs to them.
+INLINE void run_order(real8 v[3], real8 a[3], real8 b[3], int i, int j) {
+    const real8 less = v[i], more = v[j];
+    run_swap(less, more, a + i, a + j);
+    run_swap(less, more, b + i, b + j);
+    run_swap(less, more, v + i, v + j);
+}
+
+INLINE void run_sort(real8 v[3], real8 a[3], real8 b[3]) {
+    run_order(v, a, b, 0, 1);
+    run_order(v, a, b, 1, 2);
+    run_order(v, a, b, 0, 1);
+}
+
+// Cells that corners v meet along an axis; what lies exactly on the upper face belongs to the last. Returns where there are any.
+INLINE int8 run_extent(const real8 v[3], uint size, real8 slack, int8* first, int8* last, int8* clipped) {
+    const real8 least = lanes_min3(v[0], v[1], v[2]), most = lanes_max3(v[0], v[1], v[2]), end = LANES_OF(size - 1u);
+    *first = lanes_int(lanes_min(lanes_max(least - slack, LANES_OF(0)), end));
+    *last = lanes_int(lanes_min(lanes_max(most + slack, LANES_OF(0)), end));
+    *clipped = LANES_TRUE(least < LANES_OF(0)) | LANES_TRUE(most > LANES_OF(size));
+    return LANES_TRUE(most >= LANES_OF(0)) & LANES_TRUE(least <= LANES_OF(size));
+}
+
+INLINE real8 run_most(const real8 v[3]) { return lanes_max3(fabs(v[0]), fabs(v[1]), fabs(v[2])); }
+
+// Sets up eight triangles of the mesh, of which only the live ones (-1) count.
+INLINE void run_setup(const vitrail_GridDesc* grid, global const float* positions, global const uint* indices, uint vertexCount,
+                      const uint triangles[LANES], int8 live, Runs* runs) {
+    float gathered[9][LANES];
+    uint corners[3][LANES];
+    for (int lane = 0; lane < LANES; ++lane)
+        for (int k = 0; k < 3; ++k) {
+            const uint vertex = indices[3 * (size_t)triangles[lane] + k], there = vertex < vertexCount ? vertex : 0u;
+            corners[k][lane] = vertex;
+            for (int axis = 0; axis < 3; ++axis) gathered[3 * k + axis][lane] = positions[3 * (size_t)there + axis];
+        }
+    real8 x[3], y[3], z[3];
+    int8 good = (int8)(-1);
+    for (int k = 0; k < 3; ++k) {
+        const float8 px = vload8(0, gathered[3 * k]), py = vload8(0, gathered[3 * k + 1]), pz = vload8(0, gathered[3 * k + 2]);
+        good &= (vload8(0, corners[k]) < vertexCount) & isfinite(px) & isfinite(py) & isfinite(pz);
+        grid_to_voxel8(grid, px, py, pz, x + k, y + k, z + k);
     }
-    bounds->low[edge] = low;
-    bounds->high[edge] = high;
-}
+    const real size = REAL(max(grid->size.x, max(grid->size.y, grid->size.z)));
+    const real8 delta = lanes_max(lanes_max3(run_most(x), run_most(y), run_most(z)), LANES_OF(size)) * LANES_OF(REAL_EPSILON);
+    const real8 margin = LANES_OF(8) * delta, slack = RUN_BOX_SLACK * delta;
+    int8 clippedX, clippedY, clippedZ;
+    const int8 inside = run_extent(x, grid->size.x, slack, &runs->first[0], &runs->last[0], &clippedX) &
+                        run_extent(y, grid->size.y, slack, &runs->first[1], &runs->last[1], &clippedY) &
+                        run_extent(z, grid->size.z, slack, &runs->first[2], &runs->last[2], &clippedZ);
 
-INLINE real run_low(const Bounds3* b, real v) {
-    return real_max(b->low[0].slope * v + b->low[0].offset,
-                real_max(b->low[1].slope * v + b->low[1].offset, b->low[2].slope * v + b->low[2].offset));
-}
-INLINE real run_high(const Bounds3* b, real v) {
-    return real_min(b->high[0].slope * v + b->high[0].offset,
-                real_min(b->high[1].slope * v + b->high[1].offset, b->high[2].slope * v + b->high[2].offset));
-}
-
-INLINE void run_projection(Bounds3* bounds, real v0, real u0, real v1, real u1, real v2, real u2, real s, real delta,
-                                  real extents) {
-    run_edge(bounds, 0, v0, u0, v1, u1, s, delta, extents);
-    run_edge(bounds, 1, v1, u1, v2, u2, s, delta, extents);
-    run_edge(bounds, 2, v2, u2, v0, u0, s, delta, extents);
-}
-
-// Cells along one axis that [least, most] meets; geometry exactly on the upper face belongs to the last. False when none.
-INLINE bool run_extent(real least, real most, uint size, real delta, int* first, int* last, int axis, int* wide) {
-    if (!(most >= REAL(0)) || !(least <= REAL(size))) return false;
-    *wide |= (floor(least - delta) != floor(most + delta) || most > REAL(size)) ? axis : 0;
-    *first = (int)real_max(floor(least - delta), REAL(0));
-    *last = (int)real_min(floor(most + delta), REAL(size - 1u));
-    *first = min(*first, (int)size - 1);
-    return true;
-}
-
-// The triangle's box of cells. False when it lies outside the grid.
-INLINE bool run_box(const vitrail_GridDesc* grid, const Triangle* t, real delta, Runs* runs) {
-    const real slack = RUN_BOX_SLACK * delta;
-    runs->wide = 0;
-    return run_extent(real_min(t->a.x, real_min(t->b.x, t->c.x)), real_max(t->a.x, real_max(t->b.x, t->c.x)), grid->size.x, slack, &runs->xFirst,
-                      &runs->xLast, 1, &runs->wide) &&
-           run_extent(real_min(t->a.y, real_min(t->b.y, t->c.y)), real_max(t->a.y, real_max(t->b.y, t->c.y)), grid->size.y, slack, &runs->yFirst,
-                      &runs->yLast, 2, &runs->wide) &&
-           run_extent(real_min(t->a.z, real_min(t->b.z, t->c.z)), real_max(t->a.z, real_max(t->b.z, t->c.z)), grid->size.z, slack, &runs->zFirst,
-                      &runs->zLast, 4, &runs->wide);
-}
-
-// By how much the coordinates of the vertices may be off.
-INLINE real run_delta(const vitrail_GridDesc* grid, const Triangle* t) {
-    const real a = real_max(fabs(t->a.x), real_max(fabs(t->a.y), fabs(t->a.z))), b = real_max(fabs(t->b.x), real_max(fabs(t->b.y), fabs(t->b.z))),
-               c = real_max(fabs(t->c.x), real_max(fabs(t->c.y), fabs(t->c.z)));
-    return real_max(REAL(max(grid->size.x, max(grid->size.y, grid->size.z))), real_max(a, real_max(b, c))) * REAL_EPSILON;
-}
-
-INLINE void run_bounds(const Triangle* t, real delta, Runs* runs) {
-    // A connected set whose box is one cell wide along two axes meets every cell along the third; of one that lies within one layer of cells,
-    // those that its projection along the layer's axis meets.
-    runs->byXY = (runs->wide & 3) == 3;
-    runs->byYZ = (runs->wide & 6) == 6;
-    runs->byZX = (runs->wide & 5) == 5;
-    if (!(runs->byXY || runs->byYZ || runs->byZX)) return;
-    const real ox = REAL(runs->xFirst), oy = REAL(runs->yFirst), oz = REAL(runs->zFirst);
-    const real ax = t->a.x - ox, ay = t->a.y - oy, az = t->a.z - oz;
-    const real bx = t->b.x - ox, by = t->b.y - oy, bz = t->b.z - oz;
-    const real cx = t->c.x - ox, cy = t->c.y - oy, cz = t->c.z - oz;
-    const real ux = bx - ax, uy = by - ay, uz = bz - az, vx = cx - ax, vy = cy - ay, vz = cz - az;
-    const real nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
-    const real extents = fabs(ux) + fabs(uy) + fabs(uz) + fabs(vx) + fabs(vy) + fabs(vz) + REAL(4);
-
-    // Each projection's winding is the sign of its component of the normal.
-    if (runs->byXY) run_projection(&runs->xOfY, ay, ax, by, bx, cy, cx, nz >= REAL(0) ? REAL(-1) : REAL(1), delta, extents);
-    if (runs->byYZ) run_projection(&runs->zOfY, ay, az, by, bz, cy, cz, nx >= REAL(0) ? REAL(1) : REAL(-1), delta, extents);
-    if (runs->byZX) run_projection(&runs->zOfX, ax, az, bx, bz, cx, cz, ny >= REAL(0) ? REAL(-1) : REAL(1), delta, extents);
-
-    runs->planeX = runs->planeY = REAL(0);
-    runs->planeLow = -RUN_FAR;
-    runs->planeHigh = RUN_FAR;
-    if (runs->wide == 7 && fabs(nz) > REAL_PARALLEL * (fabs(nx) + fabs(ny))) {
-        const real margin = REAL(8) * delta * (fabs(nx) + fabs(ny) + fabs(nz)) + REAL(4) * delta * extents * extents;
-        const real d = nx * ax + ny * ay + nz * az;
-        const real lowCorner = real_min(nx, REAL(0)) + real_min(ny, REAL(0)) + real_min(nz, REAL(0));
-        const real highCorner = real_max(nx, REAL(0)) + real_max(ny, REAL(0)) + real_max(nz, REAL(0));
-        runs->planeX = -nx / nz;
-        runs->planeY = -ny / nz;
-        const real p = (d + margin - lowCorner) / nz, q = (d - margin - highCorner) / nz;
-        runs->planeHigh = real_max(p, q);
-        runs->planeLow = real_min(p, q);
+    const real8 ox = LANES_REAL(runs->first[0]), oy = LANES_REAL(runs->first[1]), oz = LANES_REAL(runs->first[2]);
+    for (int k = 0; k < 3; ++k) {
+        x[k] -= ox;
+        y[k] -= oy;
+        z[k] -= oz;
     }
+    const real8 ux = x[1] - x[0], uy = y[1] - y[0], uz = z[1] - z[0], vx = x[2] - x[0], vy = y[2] - y[0], vz = z[2] - z[0];
+    const real8 nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
+    const int8 flat = LANES_TRUE(nx == LANES_OF(0)) & LANES_TRUE(ny == LANES_OF(0)) & LANES_TRUE(nz == LANES_OF(0));
+    const int8 found = (inside & (RUN_INSIDE | (flat & RUN_DEGENERATE) | ((clippedX | clippedY) & RUN_CLIPPED))) | (~inside & RUN_OUTSIDE);
+    runs->state = live & ((good & found) | (~good & RUN_SKIPPED));
+    const real8 inverse = fabs(nz) > LANES_OF(REAL_PARALLEL) * (fabs(nx) + fabs(ny)) ? LANES_OF(-1) / nz : LANES_OF(0);
+    runs->planeX = nx * inverse;
+    runs->planeY = ny * inverse;
+    real8 offset[3];
+    for (int k = 0; k < 3; ++k) offset[k] = fma(-runs->planeX, x[k], fma(-runs->planeY, y[k], z[k]));
+    const real8 out = margin * (LANES_OF(1) + fabs(runs->planeX) + fabs(runs->planeY));
+    runs->planeLow = lanes_min3(offset[0], offset[1], offset[2]) + lanes_min(runs->planeX, LANES_OF(0)) +
+                     lanes_min(runs->planeY, LANES_OF(0)) - out;
+    runs->planeHigh = lanes_max3(offset[0], offset[1], offset[2]) + lanes_max(runs->planeX, LANES_OF(0)) +
+                      lanes_max(runs->planeY, LANES_OF(0)) + (out + LANES_OF(1));
+
+    real8 inverses[3];
+    run_sort(y, x, z);
+    run_inverses(y, inverses);
+    run_projection(&runs->xOfY, y, x, inverses, margin);
+    run_projection(&runs->zOfY, y, z, inverses, margin);
+    run_sort(x, z, y);
+    run_inverses(x, inverses);
+    run_projection(&runs->zOfX, x, z, inverses, margin);
 }
 
-// Cells of row y (a grid coordinate) between xLeast and xMost: first and last x, empty when first > last.
-INLINE void run_row(const Runs* runs, int y, int xLeast, int xMost, int* first, int* last) {
-    const real v = REAL(y - runs->yFirst), ox = REAL(runs->xFirst);
-    *first = (int)ceil(real_max(run_low(&runs->xOfY, v), REAL(xLeast) - ox)) + runs->xFirst;
-    *last = (int)floor(real_min(run_high(&runs->xOfY, v), REAL(xMost) - ox)) + runs->xFirst;
+// The runs of the triangle in `lane` at eight places v along the axis that bounds what: first and end, within [least, most].
+INLINE void run_bounds(const Bounds* bounds, int lane, real8 v, real least, real most, int8* first, int8* end) {
+    const real8 low = lanes_max(fma(LANES_OF(lanes_at(&bounds->lowSlope[0], lane)), v, LANES_OF(lanes_at(&bounds->low[0], lane))),
+                                fma(LANES_OF(lanes_at(&bounds->lowSlope[1], lane)), v, LANES_OF(lanes_at(&bounds->low[1], lane))));
+    const real8 high = lanes_min(fma(LANES_OF(lanes_at(&bounds->highSlope[0], lane)), v, LANES_OF(lanes_at(&bounds->high[0], lane))),
+                                 fma(LANES_OF(lanes_at(&bounds->highSlope[1], lane)), v, LANES_OF(lanes_at(&bounds->high[1], lane))));
+    *first = lanes_int(lanes_min(lanes_max(low, LANES_OF(least)), LANES_OF(most)));
+    *end = lanes_int(lanes_min(lanes_max(high, LANES_OF(least)), LANES_OF(most)));
 }
 
 #endif

@@ -2,7 +2,7 @@
 #ifndef VITRAIL_LIB_GRID
 #define VITRAIL_LIB_GRID
 #include "layout/grid.h"
-#include "lib/real.cl"
+#include "lib/lanes.cl"
 #pragma OPENCL FP_CONTRACT OFF
 
 typedef struct {
@@ -38,6 +38,22 @@ INLINE Point grid_to_voxel(const vitrail_GridDesc* grid, float px, float py, flo
     v.x = (right / halfX * REAL(0.5f) + REAL(0.5f)) * REAL(grid->size.x);
     v.y = (up / halfY * REAL(0.5f) + REAL(0.5f)) * REAL(grid->size.y);
     return v;
+}
+
+// The same for eight points.
+INLINE void grid_to_voxel8(const vitrail_GridDesc* grid, float8 px, float8 py, float8 pz, real8* x, real8* y, real8* z) {
+    if (grid->kind == VITRAIL_GRID_BOX) {
+        *x = (LANES_REAL(px) - REAL(grid->origin.x)) / REAL(grid->extent.x);
+        *y = (LANES_REAL(py) - REAL(grid->origin.y)) / REAL(grid->extent.y);
+        *z = (LANES_REAL(pz) - REAL(grid->origin.z)) / REAL(grid->extent.z);
+        return;
+    }
+    for (int lane = 0; lane < LANES; ++lane) {
+        const Point v = grid_to_voxel(grid, ((float*)&px)[lane], ((float*)&py)[lane], ((float*)&pz)[lane]);
+        ((real*)x)[lane] = v.x;
+        ((real*)y)[lane] = v.y;
+        ((real*)z)[lane] = v.z;
+    }
 }
 
 #endif

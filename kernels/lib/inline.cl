@@ -3,7 +3,7 @@
 #ifndef VITRAIL_LIB_INLINE
 #define VITRAIL_LIB_INLINE
 #pragma OPENCL FP_CONTRACT OFF
-#ifdef VITRAIL_PLAIN_INLINE  // Oclgrind does not know what LLVM leaves behind (llvm.experimental.noalias.scope.decl)
+#ifdef VITRAIL_OCLGRIND  // Oclgrind does not know what LLVM leaves behind (llvm.experimental.noalias.scope.decl)
 #define INLINE static inline
 #else
 #define INLINE static inline __attribute__((always_inline))

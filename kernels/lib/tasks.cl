@@ -3,6 +3,7 @@
 // place.
 #ifndef VITRAIL_LIB_TASKS
 #define VITRAIL_LIB_TASKS
+#include "lib/lanes.cl"
 #include "lib/triangle.cl"
 #pragma OPENCL FP_CONTRACT OFF
 
@@ -25,6 +26,18 @@ static inline bool tasks_add(global uint2* tasks, uint capacity, global uint* st
 }
 
 static inline uint tasks_count(global const uint* status, uint capacity) { return min(status[STATUS_TASKS], capacity); }
+
+// Up to eight tasks; returns which are there (-1). Others name a triangle all the same.
+static inline int8 tasks_load(global const uint2* tasks, size_t count, uint triangles[LANES], int blocks[LANES]) {
+    int there[LANES];
+    for (int lane = 0; lane < LANES; ++lane) {
+        const uint2 task = tasks[min((size_t)lane, count - 1)];
+        there[lane] = task.x != TASKS_NONE ? -1 : 0;
+        triangles[lane] = task.x != TASKS_NONE ? task.x : 0u;
+        blocks[lane] = (int)task.y;
+    }
+    return vload8(0, there);
+}
 
 // Edge in columns of the blocks of a box of columns.
 static inline int tasks_edge(int width, int height) {
