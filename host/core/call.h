@@ -2,6 +2,7 @@
 // is seen here.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -60,6 +61,9 @@ public:
         const Spread spread = spreadOver(count, together);
         launch(program, kernel, (count + spread.perItem - 1) / spread.perItem, spread.local, args..., count, spread.perItem);
     }
+    /// A buffer of `count` words that stays with the queue, under `name`; made by make(buffer) when first asked for.
+    const Buffer<std::uint32_t>& kept(const std::string& name, std::uint64_t count,
+                                      const std::function<void(Buffer<std::uint32_t>&)>& make);
     /// Work-groups that take part in a launch of which each takes several tasks.
     std::uint32_t taskGroups() const;
 

@@ -197,6 +197,15 @@ Call::Spread Call::spreadOver(std::uint64_t count, std::uint32_t together) const
     return {(static_cast<std::uint32_t>(std::clamp<std::uint64_t>(share, 1, 64)) + together - 1) / together * together, 1};
 }
 
+const Buffer<std::uint32_t>& Call::kept(const std::string& name, std::uint64_t count,
+                                        const std::function<void(Buffer<std::uint32_t>&)>& make) {
+    std::map<std::string, Buffer<std::uint32_t>>& all = queue_.state()->kept;
+    if (const auto found = all.find(name); found != all.end()) return found->second;
+    Buffer<std::uint32_t> buffer = queue_.workspace().take<std::uint32_t>(count, name);
+    make(buffer);
+    return all.emplace(name, std::move(buffer)).first->second;
+}
+
 void* Call::beginLaunch(const Program& which, const char* kernel) {
     QueueState& state = *queue_.state();
     const std::string key = std::string(kernel) + " " + which.options;

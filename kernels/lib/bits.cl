@@ -50,13 +50,17 @@ INLINE void bits_set_row(global uint* words, uint8 mask, bool often) {
 #endif
 }
 
+// ORs bits that are likely to be there.
+INLINE void bits_set_often(global uint* word, uint mask) {
+    if (!BITS_LOOK || (*word & mask) != mask) atomic_or(word, mask);
+}
+
 // Sets slices zFirst to zLast of a column, most of which are likely to be there.
 INLINE void bits_set_run(global uint* bits, size_t column, uint zFirst, uint zLast) {
     const uint wFirst = zFirst >> 5, wLast = zLast >> 5;
     for (uint w = wFirst; w <= wLast; ++w) {
         const uint mask = bits_mask(w == wFirst ? (zFirst & 31u) : 0u, w == wLast ? (zLast & 31u) : 31u);
-        global uint* word = bits + column + (size_t)w * VITRAIL_WORDS_PER_TILE;
-        if (!BITS_LOOK || (*word & mask) != mask) atomic_or(word, mask);
+        bits_set_often(bits + column + (size_t)w * VITRAIL_WORDS_PER_TILE, mask);
     }
 }
 

@@ -105,21 +105,8 @@ INLINE real8 run_most(const real8 v[3]) { return lanes_max3(fabs(v[0]), fabs(v[1
 // Sets up eight triangles of the mesh, of which only the live ones (-1) count.
 INLINE void run_setup(const vitrail_GridDesc* grid, global const float* positions, global const uint* indices, uint vertexCount,
                       const uint triangles[LANES], int8 live, Runs* runs) {
-    float gathered[9][LANES];
-    uint corners[3][LANES];
-    for (int lane = 0; lane < LANES; ++lane)
-        for (int k = 0; k < 3; ++k) {
-            const uint vertex = indices[3 * (size_t)triangles[lane] + k], there = vertex < vertexCount ? vertex : 0u;
-            corners[k][lane] = vertex;
-            for (int axis = 0; axis < 3; ++axis) gathered[3 * k + axis][lane] = positions[3 * (size_t)there + axis];
-        }
     real8 x[3], y[3], z[3];
-    int8 good = (int8)(-1);
-    for (int k = 0; k < 3; ++k) {
-        const float8 px = vload8(0, gathered[3 * k]), py = vload8(0, gathered[3 * k + 1]), pz = vload8(0, gathered[3 * k + 2]);
-        good &= (vload8(0, corners[k]) < vertexCount) & isfinite(px) & isfinite(py) & isfinite(pz);
-        grid_to_voxel8(grid, px, py, pz, x + k, y + k, z + k);
-    }
+    const int8 good = triangle_eight(grid, positions, indices, vertexCount, triangles, x, y, z);
     const real size = REAL(max(grid->size.x, max(grid->size.y, grid->size.z)));
     const real8 delta = lanes_max(lanes_max3(run_most(x), run_most(y), run_most(z)), LANES_OF(size)) * LANES_OF(REAL_EPSILON);
     const real8 margin = LANES_OF(8) * delta, slack = RUN_BOX_SLACK * delta;

@@ -23,6 +23,11 @@ INLINE int8 lanes_int(real8 a) { return convert_int8(a); }  // toward zero
 // Of a comparison of real8: -1 where it holds.
 #define LANES_TRUE(comparison) convert_int8(comparison)
 
+INLINE int8 lanes_ceil_int(real8 a) {
+    const int8 i = convert_int8(a);
+    return i - LANES_TRUE(LANES_REAL(i) < a);
+}
+
 // Lane `lane` of a vector in private memory.
 INLINE real lanes_at(const real8* v, int lane) { return ((const real*)v)[lane]; }
 INLINE int lanes_int_at(const int8* v, int lane) { return ((const int*)v)[lane]; }

@@ -19,4 +19,14 @@ typedef double real;
 INLINE real real_min(real a, real b) { return a < b ? a : b; }
 INLINE real real_max(real a, real b) { return a > b ? a : b; }
 
+// floor and ceil of numbers that an int holds: PoCL 3.1 spells floor() and ceil() out in twenty operations and a branch or two.
+INLINE int real_floor_int(real a) {
+    const int i = (int)a;
+    return i - (REAL(i) > a ? 1 : 0);
+}
+INLINE int real_ceil_int(real a) {
+    const int i = (int)a;
+    return i + (REAL(i) < a ? 1 : 0);
+}
+
 #endif

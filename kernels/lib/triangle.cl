@@ -2,6 +2,7 @@
 #ifndef VITRAIL_LIB_TRIANGLE
 #define VITRAIL_LIB_TRIANGLE
 #include "lib/grid.cl"
+#include "lib/lanes.cl"
 #pragma OPENCL FP_CONTRACT OFF
 
 // What a call counts, in this order, in its status buffer (host/voxelize/prepare.h).
@@ -59,6 +60,32 @@ INLINE Point triangle_normal(global const float* p, const uint corner[3]) {
     n.y /= length;
     n.z /= length;
     return n;
+}
+
+// Eight triangles of the mesh in voxel coordinates; -1 for those that are usable.
+INLINE int8 triangle_eight(const vitrail_GridDesc* grid, global const float* positions, global const uint* indices, uint vertexCount,
+                           const uint triangles[LANES], real8 x[3], real8 y[3], real8 z[3]) {
+    float gathered[9][LANES];
+    uint corners[3][LANES];
+    for (int lane = 0; lane < LANES; ++lane)
+        for (int k = 0; k < 3; ++k) {
+            const uint vertex = indices[3 * (size_t)triangles[lane] + k], there = vertex < vertexCount ? vertex : 0u;
+            corners[k][lane] = vertex;
+            for (int axis = 0; axis < 3; ++axis) gathered[3 * k + axis][lane] = positions[3 * (size_t)there + axis];
+        }
+    int8 good = (int8)(-1);
+    for (int k = 0; k < 3; ++k) {
+        const float8 px = vload8(0, gathered[3 * k]), py = vload8(0, gathered[3 * k + 1]), pz = vload8(0, gathered[3 * k + 2]);
+        good &= (vload8(0, corners[k]) < vertexCount) & isfinite(px) & isfinite(py) & isfinite(pz);
+        grid_to_voxel8(grid, px, py, pz, x + k, y + k, z + k);
+    }
+    return good;
+}
+
+// -1 for those without area, in this arithmetic.
+INLINE int8 triangle_flat_eight(const real8 x[3], const real8 y[3], const real8 z[3]) {
+    const real8 ux = x[1] - x[0], uy = y[1] - y[0], uz = z[1] - z[0], vx = x[2] - x[0], vy = y[2] - y[0], vz = z[2] - z[0];
+    return LANES_TRUE(uy * vz == uz * vy) & LANES_TRUE(uz * vx == ux * vz) & LANES_TRUE(ux * vy == uy * vx);
 }
 
 #endif

@@ -14,6 +14,9 @@
 // does not matter who computes it. Its rounding is below 8 * 2^-53 of the triangle's size and of its distance from the grid's
 // origin, in cells: far below a tie, while a coordinate that the three corners share is kept to the bit.
 //
+// The small patterns are enumerated once into a table of weights (points_table), and eight triangles are set up together: most triangles
+// then cost one point, or one look at the table for every eight points.
+//
 // A factor above MAX_FACTOR splits the triangle at its edge midpoints, as often as it takes (the passes of section 4.2), leaving
 // out what lies outside the grid.
 #include "lib/mark.cl"
@@ -21,6 +24,8 @@
 
 #define MAX_FACTOR REAL(64)
 #define MAX_SPLITS 20  // halvings; what is still too coarse is skipped
+#define TABLE_FACTOR 6  // the table has all patterns with factors up to this on the edges
+#define TABLE_ROOM 56   // weights of a pattern, at most 54
 #define TASK_SPLITS 5  // a task is a part after at most this many halvings: 4^5 = TASKS_BLOCKS
 
 // Where points go: one write for the points of one word, or of one voxel, that follow each other.
@@ -32,6 +37,8 @@ typedef struct {
     uint material;
     uint x, y, z;      // the last point's cell
     uint mask, times;  // bits of its word that wait, and points; times 0: nothing does
+    global real* weights;  // not null: points are not marked but written here, x to the first TABLE_ROOM, y to the next
+    uint written;
 } Scatter;
 
 static inline void points_flush(Scatter* s) {
@@ -126,6 +133,11 @@ static inline real points_factor(const vitrail_GridDesc* grid, real gamma, Point
 
 static inline void points_emit(Scatter* s, Point base, Point u, real alpha) {
     const Point p = {base.x + alpha * u.x, base.y + alpha * u.y, base.z + alpha * u.z};
+    if (s->weights) {
+        s->weights[s->written] = p.x;
+        s->weights[TABLE_ROOM + s->written++] = p.y;
+        return;
+    }
     uint cell[3];
     if (points_cell(s->grid, points_voxel(s->grid, p), cell)) points_put(s, cell[0], cell[1], cell[2], 1u);
 }
@@ -212,13 +224,130 @@ static inline void points_part(const Point root[3], ulong path, int splits, Poin
     }
 }
 
-// One triangle, or one part of a big one (block >= 0). Returns without marking when it is not usable.
-static inline void points_triangle(const vitrail_GridDesc* grid, float safetyFactor, global const float* positions,
-                                   global const uint* indices, uint vertexCount, uint triangle, int block, global uint* bits,
-                                   const Channels* channels, global const uint* materials, global uint2* tasks, uint taskCapacity,
-                                   global uint* status) {
+// A pattern's factor inside. A factor of one inside and more on an edge counts as a little more than one, as both specifications have it.
+static inline int points_inside(int n, const int t[3]) { return n <= 1 ? (t[0] > 1 || t[1] > 1 || t[2] > 1 ? 2 : 1) : n; }
+
+// Where the table has edge factors t, with the greatest inside factor that they allow or one less.
+static inline size_t points_slot(const int t[3], int n) {
+    const int less = (t[0] + t[1] + t[2] + 2) / 3 - n;
+    return (size_t)((((t[0] - 1) * TABLE_FACTOR + t[1] - 1) * TABLE_FACTOR + t[2] - 1) * 2 + clamp(less, 0, 1)) * (2 * TABLE_ROOM);
+}
+
+// The table: for each pattern the weights of the second and the third corner, the last pair repeated.
+kernel void points_table(global real* table) {
+    const int id = (int)get_global_id(0), edges = id / 2;
+    const int t[3] = {edges / (TABLE_FACTOR * TABLE_FACTOR) + 1, edges / TABLE_FACTOR % TABLE_FACTOR + 1, edges % TABLE_FACTOR + 1};
+    const int n = points_inside((t[0] + t[1] + t[2] + 2) / 3 - id % 2, t);
+    const Point unit[3] = {{REAL(0), REAL(0), REAL(0)}, {REAL(1), REAL(0), REAL(0)}, {REAL(0), REAL(1), REAL(0)}};
+    Scatter s = {0, 0, 0, {0, 0, 0}, 0u, 0u, 0u, 0u, 0u, 0u, table + (size_t)id * (2 * TABLE_ROOM), 0u};
+    points_tessellate(&s, unit, n, t);
+    for (uint i = s.written; i < TABLE_ROOM; ++i)
+        for (int k = 0; k < 2; ++k) s.weights[k * TABLE_ROOM + i] = s.weights[k * TABLE_ROOM + s.written - 1u];
+}
+
+// Marks cells of eight points, of which the first `count` are there.
+INLINE void points_mark_eight(const Scatter* s, int8 x, int8 y, int8 z, int8 inside, int count) {
+    const vitrail_GridDesc* grid = s->grid;
+    const int8 word = (((y >> 3) * (int)grid->tilesX + (x >> 3)) * (int)grid->size.w + (z >> 5)) * (int)VITRAIL_WORDS_PER_TILE +
+                      (y & 7) * 8 + (x & 7);
+    const uint8 bit = as_uint8(inside) & ((uint8)(1u) << as_uint8(z & 31));
+    for (int i = 0; i < count; ++i) {
+        const uint at = (uint)lanes_int_at(&word, i), mask = (uint)lanes_int_at((const int8*)&bit, i);
+        if (!s->channels)
+            bits_set_often(s->bits + at, mask);
+        else if (mask != 0u)
+            channels_add_times(s->channels, at, 31u - clz(mask), s->normal, s->material, 1u);
+    }
+}
+
+// Slices, rows or columns of eight coordinates, brought into the grid.
+INLINE int8 points_cells(real8 v, uint size) {
+    return min(lanes_int(lanes_min(lanes_max(v, LANES_OF(0)), LANES_OF(size))), (int8)((int)size - 1));
+}
+INLINE int8 points_within(real8 v, uint size) { return LANES_TRUE(v >= LANES_OF(0)) & LANES_TRUE(v <= LANES_OF(size)); }
+
+// A triangle whose pattern is in the table.
+INLINE void points_by_table(const Scatter* s, const Point c[3], int n, const int t[3], global const real* table) {
+    const vitrail_GridDesc* grid = s->grid;
+    const Point u = {c[1].x - c[0].x, c[1].y - c[0].y, c[1].z - c[0].z}, v = {c[2].x - c[0].x, c[2].y - c[0].y, c[2].z - c[0].z};
+    global const real* weights = table + points_slot(t, n);
+    const int count = (int)points_count(n, t);
+    for (int i = 0; i < count; i += LANES) {
+        const real8 a = *(global const real8*)(weights + i), b = *(global const real8*)(weights + TABLE_ROOM + i);
+        const real8 x = (c[0].x + b * v.x) + a * u.x, y = (c[0].y + b * v.y) + a * u.y, z = (c[0].z + b * v.z) + a * u.z;
+        const int8 inside = points_within(x, grid->size.x) & points_within(y, grid->size.y) & points_within(z, grid->size.z);
+        points_mark_eight(s, points_cells(x, grid->size.x), points_cells(y, grid->size.y), points_cells(z, grid->size.z), inside,
+                          min(LANES, count - i));
+    }
+}
+
+// What eight triangles of a grid without perspective are.
+typedef struct {
+    int8 good, outside, flat;  // -1 or 0
+    int8 single;               // all its points, `times` of them, are in cell (x, y, z), or its only one is not in the grid (times 0)
+    int8 x, y, z, times;
+    int8 small;                // the table has its pattern: inside factor n, edge factors t
+    int8 n, t[3];
+    real8 corner[3][3];        // axis, vertex
+} Eight;
+
+INLINE void points_eight(const vitrail_GridDesc* grid, real gamma, global const float* positions, global const uint* indices,
+                         uint vertexCount, const uint triangles[LANES], Eight* eight) {
+    real8* x = eight->corner[0];
+    real8* y = eight->corner[1];
+    real8* z = eight->corner[2];
+    eight->good = triangle_eight(grid, positions, indices, vertexCount, triangles, x, y, z);
+    eight->flat = triangle_flat_eight(x, y, z);
+    eight->outside = (int8)(0);
+    int8 together = (int8)(-1), inside = (int8)(-1);
+    real8 factor[3] = {LANES_OF(0), LANES_OF(0), LANES_OF(0)};
+    int8 cell[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        const real8* v = eight->corner[axis];
+        const uint size = axis == 0 ? grid->size.x : axis == 1 ? grid->size.y : grid->size.z;
+        eight->outside |= LANES_TRUE(lanes_max3(v[0], v[1], v[2]) < LANES_OF(0)) | LANES_TRUE(lanes_min3(v[0], v[1], v[2]) > LANES_OF(size));
+        int8 cells[3];
+        for (int k = 0; k < 3; ++k) {
+            factor[k] = lanes_max(factor[k], fabs(v[k] - v[k == 2 ? 0 : k + 1]));
+            cells[k] = points_cells(v[k], size);
+            together &= points_within(v[k], size) & (cells[k] == cells[0]);
+        }
+        // The centroid, for triangles of one point.
+        const real third = REAL(1) / REAL(3);
+        const real8 middle = (v[0] + third * (v[2] - v[0])) + third * (v[1] - v[0]);
+        inside &= points_within(middle, size);
+        cell[axis] = points_cells(middle, size);
+    }
+    for (int k = 0; k < 3; ++k) factor[k] *= gamma;
+    const real8 most = lanes_max3(factor[0], factor[1], factor[2]), room = LANES_OF(TABLE_FACTOR + 1);
+    for (int k = 0; k < 3; ++k) eight->t[k] = max(lanes_ceil_int(lanes_min(factor[k], room)), (int8)(1));
+    const int8 n = lanes_ceil_int(lanes_min((factor[0] + factor[1] + factor[2]) / REAL(3), room));
+    const int8 one = LANES_TRUE(most <= LANES_OF(1));
+    eight->n = max(n, one ? (int8)(1) : (int8)(2));
+    const int8 edges = eight->t[0] + eight->t[1] + eight->t[2], m = eight->n - 2;
+    eight->small = LANES_TRUE(most <= LANES_OF(TABLE_FACTOR));
+    eight->single = one | (together & eight->small);
+    eight->times = one ? inside & 1 : edges + 3 * m + 3 * m * m / 2;
+    // What is together is so in the cell of its centroid too, whatever its rounding.
+    eight->x = one ? cell[0] : points_cells(x[0], grid->size.x);
+    eight->y = one ? cell[1] : points_cells(y[0], grid->size.y);
+    eight->z = one ? cell[2] : points_cells(z[0], grid->size.z);
+}
+
+static inline void points_attributes(Scatter* s, global const float* positions, global const uint* indices, uint vertexCount,
+                                     global const uint* materials, uint triangle) {
     uint corner[3];
-    const bool counting = block < 0 && !channels;
+    if (!s->channels || !triangle_corners(positions, indices, vertexCount, triangle, corner)) return;
+    if (s->channels->normalSum) channels_normal(triangle_normal(positions, corner), s->normal);
+    if (s->channels->material && materials) s->material = materials[triangle];
+}
+
+// A triangle, or one part of a big one (block >= 0), of any grid and any factors. Returns without marking when it is not usable.
+static inline void points_triangle(Scatter* s, float safetyFactor, global const float* positions, global const uint* indices,
+                                   uint vertexCount, uint triangle, int block, bool counting, global uint2* tasks, uint taskCapacity,
+                                   global uint* status) {
+    const vitrail_GridDesc* grid = s->grid;
+    uint corner[3];
     if (!triangle_corners(positions, indices, vertexCount, triangle, corner)) {
         if (counting) atomic_inc(status + STATUS_SKIPPED);
         return;
@@ -245,20 +374,9 @@ static inline void points_triangle(const vitrail_GridDesc* grid, float safetyFac
     for (real f = most; f > MAX_FACTOR && splits < MAX_SPLITS; f *= REAL(0.5f)) ++splits;
     const int taskSplits = min(splits, TASK_SPLITS);
     if (block < 0 && splits > 0 && tasks_add(tasks, taskCapacity, status, triangle, 1u << (2 * taskSplits))) return;
-
-    Scatter s;
-    s.grid = grid;
-    s.bits = bits;
-    s.channels = channels;
-    s.normal[0] = s.normal[1] = s.normal[2] = 0;
-    s.material = 0u;
-    s.times = 0u;
-    s.x = s.y = s.z = s.mask = 0u;
-    if (channels && channels->normalSum) channels_normal(triangle_normal(positions, corner), s.normal);
-    if (channels && channels->material && materials) s.material = materials[triangle];
-    if (most <= REAL(1)) {  // most triangles of a fine mesh: one point
-        points_middle(&s, root);
-        points_flush(&s);
+    if (most <= REAL(1)) {
+        points_middle(s, root);
+        points_flush(s);
         return;
     }
 
@@ -283,30 +401,61 @@ static inline void points_triangle(const vitrail_GridDesc* grid, float safetyFac
         }
         if (!outside && fine) {
             int edges[3];
-            for (int e = 0; e < 3; ++e) edges[e] = max((int)ceil(t[e]), 1);
-            int n = max((int)ceil((t[0] + t[1] + t[2]) / REAL(3)), 1);
-            // A factor of one inside and more on an edge counts as a little more than one, as both specifications have it.
-            if (n == 1 && (edges[0] > 1 || edges[1] > 1 || edges[2] > 1)) n = 2;
+            for (int e = 0; e < 3; ++e) edges[e] = max(real_ceil_int(t[e]), 1);
+            const int n = points_inside(real_ceil_int((t[0] + t[1] + t[2]) / REAL(3)), edges);
             uint cell[3], other[3];
             bool together = points_cell(grid, points_voxel(grid, c[0]), cell);
             for (int e = 1; e < 3; ++e)
                 together = together && points_cell(grid, points_voxel(grid, c[e]), other) && other[0] == cell[0] &&
                            other[1] == cell[1] && other[2] == cell[2];
             if (together)
-                points_put(&s, cell[0], cell[1], cell[2], points_count(n, edges));
+                points_put(s, cell[0], cell[1], cell[2], points_count(n, edges));
             else
-                points_tessellate(&s, c, n, edges);
+                points_tessellate(s, c, n, edges);
         }
         path += 1ul << (2 * (MAX_SPLITS - depth));
         // Up again, to the largest part that begins here.
         while (depth > taskSplits && ((path >> (2 * (MAX_SPLITS - depth))) & 3ul) == 0ul) --depth;
     }
-    points_flush(&s);
+    points_flush(s);
 }
 
-kernel void points_mark(const vitrail_GridDesc grid, float safetyFactor, MARK_PARAMETERS) {
+kernel void points_mark(const vitrail_GridDesc grid, float safetyFactor, global const real* table, MARK_PARAMETERS) {
     const Channels channels = MARK_CHANNELS;
-    MARK_EACH(triangle, block,
-              points_triangle(&grid, safetyFactor, positions, indices, vertexCount, triangle, block, bits, rank ? &channels : 0,
-                              materials, tasks, taskCapacity, status))
+    Scatter s = {&grid, bits, rank ? &channels : 0, {0, 0, 0}, 0u, 0u, 0u, 0u, 0u, 0u, 0, 0u};
+    const bool even = grid.kind != VITRAIL_GRID_PERSPECTIVE;
+    MARK_EIGHTS(triangles, blocks, live, {
+        Eight eight;
+        if (even && groups == 0u) points_eight(&grid, REAL(safetyFactor), positions, indices, vertexCount, triangles, &eight);
+        for (int lane = 0; lane < LANES; ++lane) {
+            if (!lanes_int_at(&live, lane)) continue;
+            points_attributes(&s, positions, indices, vertexCount, materials, triangles[lane]);
+            if (!even || groups != 0u || !lanes_int_at(&eight.good, lane) || lanes_int_at(&eight.outside, lane) ||
+                (!lanes_int_at(&eight.small, lane))) {
+                points_triangle(&s, safetyFactor, positions, indices, vertexCount, triangles[lane], blocks[lane],
+                                blocks[lane] < 0 && !rank, tasks, taskCapacity, status);
+                continue;
+            }
+            if (!rank && lanes_int_at(&eight.flat, lane)) atomic_inc(status + STATUS_DEGENERATE);
+            if (lanes_int_at(&eight.single, lane)) {
+                const uint times = (uint)lanes_int_at(&eight.times, lane);
+                const uint z = (uint)lanes_int_at(&eight.z, lane);
+                const size_t word = bits_word(&grid, (uint)lanes_int_at(&eight.x, lane), (uint)lanes_int_at(&eight.y, lane), z);
+                if (!rank)
+                    bits_set_often(bits + word, times != 0u ? 1u << (z & 31u) : 0u);
+                else if (times != 0u)
+                    channels_add_times(&channels, word, z & 31u, s.normal, s.material, times);
+                continue;
+            }
+            Point c[3];
+            int t[3];
+            for (int k = 0; k < 3; ++k) {
+                c[k].x = lanes_at(&eight.corner[0][k], lane);
+                c[k].y = lanes_at(&eight.corner[1][k], lane);
+                c[k].z = lanes_at(&eight.corner[2][k], lane);
+                t[k] = lanes_int_at(&eight.t[k], lane);
+            }
+            points_by_table(&s, c, lanes_int_at(&eight.n, lane), t, table);
+        }
+    })
 }

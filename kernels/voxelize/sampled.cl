@@ -66,15 +66,13 @@ static inline bool sampled_crosses(real ra, real qa, real rb, real qb) {
 // Columns (or rows) between `low` and `high` whose centre may lie in between, cut to the grid. False when there are none.
 static inline bool sampled_extent(bool perspective, real low, real high, uint size, int* first, int* last) {
     // Without projection the centre is exact, and a centre on the upper end is not met.
-    real from = ceil(low - REAL(0.5f)), to = ceil(high - REAL(0.5f)) - REAL(1);
-    if (perspective) {
-        from = floor(low - REAL(0.5f));
-        to = ceil(high - REAL(0.5f));
-    }
-    if (!(from <= REAL(size - 1u)) || !(to >= REAL(0)) || !(from <= to)) return false;
-    *first = (int)fmax(from, REAL(0));
-    *last = (int)fmin(to, REAL(size - 1u));
-    return true;
+    const real end = REAL(size) + REAL(1), lower = real_min(real_max(low - REAL(0.5f), REAL(-2)), end),
+               upper = real_min(real_max(high - REAL(0.5f), REAL(-2)), end);
+    const int from = perspective ? real_floor_int(lower) : real_ceil_int(lower);
+    const int to = real_ceil_int(upper) - (perspective ? 0 : 1);
+    *first = max(from, 0);
+    *last = min(to, (int)size - 1);
+    return from <= (int)size - 1 && to >= 0 && from <= to;
 }
 
 static inline real sampled_column(real x, real w, uint size, float tangent) {
@@ -90,7 +88,7 @@ static inline int sampled_threshold(const vitrail_GridDesc* grid, bool perspecti
     else
         at /= qb - qa;
     // A guess; what decides is the comparison.
-    int i = (int)fmin(fmax(ceil(at - REAL(0.5f)), REAL(least)), REAL(most + 1));
+    int i = real_ceil_int(real_min(real_max(at - REAL(0.5f), REAL(least)), REAL(most + 1)));
     for (bool down = true; i > least && down;) {
         const real centre = sampled_centre(perspective, i - 1, grid->size.x, grid->extent.x);
         const real ra = perspective ? a.x - centre * a.w : a.x - centre, rb = perspective ? b.x - centre * b.w : b.x - centre;
@@ -178,8 +176,8 @@ static inline void sampled_triangle(const vitrail_GridDesc* grid, global const f
     s.a = sampled_corner(grid, positions, corner[0]);
     s.b = sampled_corner(grid, positions, corner[1]);
     s.c = sampled_corner(grid, positions, corner[2]);
-    s.lowest = fmin(s.a.z, fmin(s.b.z, s.c.z));
-    s.highest = fmax(s.a.z, fmax(s.b.z, s.c.z));
+    s.lowest = real_min(s.a.z, real_min(s.b.z, s.c.z));
+    s.highest = real_max(s.a.z, real_max(s.b.z, s.c.z));
     s.perspective = grid->kind == VITRAIL_GRID_PERSPECTIVE;
     s.behind = s.perspective && !(s.a.w > REAL(0) && s.b.w > REAL(0) && s.c.w > REAL(0));
     real ax = s.a.x, bx = s.b.x, cx = s.c.x, ay = s.a.y, by = s.b.y, cy = s.c.y;
@@ -195,8 +193,8 @@ static inline void sampled_triangle(const vitrail_GridDesc* grid, global const f
         by = sampled_column(by, s.b.w, grid->size.y, grid->extent.y);
         cy = sampled_column(cy, s.c.w, grid->size.y, grid->extent.y);
     }
-    const real xLow = fmin(ax, fmin(bx, cx)), xHigh = fmax(ax, fmax(bx, cx)), yLow = fmin(ay, fmin(by, cy)),
-               yHigh = fmax(ay, fmax(by, cy));
+    const real xLow = real_min(ax, real_min(bx, cx)), xHigh = real_max(ax, real_max(bx, cx)), yLow = real_min(ay, real_min(by, cy)),
+               yHigh = real_max(ay, real_max(by, cy));
     if (!(s.highest >= REAL(0)) || !(s.lowest <= REAL(grid->size.z)) || !(xHigh >= REAL(0)) || !(xLow <= REAL(grid->size.x)) ||
         !(yHigh >= REAL(0)) || !(yLow <= REAL(grid->size.y))) {
         if (counting) atomic_inc(status + STATUS_OUTSIDE);
@@ -218,9 +216,33 @@ static inline void sampled_triangle(const vitrail_GridDesc* grid, global const f
     sampled_rows(grid, &s, xLeast, xMost, yLeast, yMost, bits, channels, normal, material, triangle);
 }
 
+// Which of eight triangles have to be looked at one by one: not those, of a grid without perspective, that are usable and have area but
+// cover no column's centre.
+INLINE int8 sampled_eight(const vitrail_GridDesc* grid, global const float* positions, global const uint* indices, uint vertexCount,
+                          const uint triangles[LANES]) {
+    if (grid->kind == VITRAIL_GRID_PERSPECTIVE) return (int8)(-1);
+    real8 x[3], y[3], z[3];
+    const int8 good = triangle_eight(grid, positions, indices, vertexCount, triangles, x, y, z);
+    int8 covers = (int8)(-1), inside = (int8)(-1);
+    for (int axis = 0; axis < 3; ++axis) {
+        const real8* v = axis == 0 ? x : axis == 1 ? y : z;
+        const real8 size = LANES_OF(axis == 0 ? grid->size.x : axis == 1 ? grid->size.y : grid->size.z), half_ = LANES_OF(0.5f);
+        const real8 least = lanes_min3(v[0], v[1], v[2]), most = lanes_max3(v[0], v[1], v[2]);
+        inside &= LANES_TRUE(most >= LANES_OF(0)) & LANES_TRUE(least <= size);
+        if (axis == 2) continue;
+        const real8 low = lanes_min(lanes_max(least - half_, LANES_OF(-2)), size), high = lanes_min(lanes_max(most - half_, LANES_OF(-2)), size);
+        covers &= lanes_ceil_int(low) < lanes_ceil_int(high);
+    }
+    return ~(good & inside & ~triangle_flat_eight(x, y, z) & ~covers);
+}
+
 kernel void sampled_mark(const vitrail_GridDesc grid, MARK_PARAMETERS) {
     const Channels channels = MARK_CHANNELS;
-    MARK_EACH(triangle, block,
-              sampled_triangle(&grid, positions, indices, vertexCount, triangle, block, bits, rank ? &channels : 0, materials,
-                               tasks, taskCapacity, status))
+    MARK_EIGHTS(triangles, blocks, live, {
+        live &= sampled_eight(&grid, positions, indices, vertexCount, triangles);
+        for (int lane = 0; lane < LANES; ++lane)
+            if (lanes_int_at(&live, lane))
+                sampled_triangle(&grid, positions, indices, vertexCount, triangles[lane], blocks[lane], bits, rank ? &channels : 0, materials,
+                                 tasks, taskCapacity, status);
+    })
 }
