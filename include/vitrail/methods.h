@@ -37,6 +37,10 @@ inline constexpr Method kMethods[] = {
     {"conservative", Family::surfaceVoxels, "Schwarz & Seidel 2010, section 3; Pantaleoni 2011", Guarantee::conservative,
      "Every cell that a triangle touches: nothing missing and nothing extra outside ties of 1e-5 cell.", true, false, Role::product,
      {kNoOption, kNoOption, kNoOption}},
+    {"thin", Family::surfaceVoxels, "Schwarz & Seidel 2010, section 3; Laine 2013", Guarantee::watertight,
+     "6-separating: every cell of which a segment between opposite face centres meets a triangle, and few more along edges.", true, false,
+     Role::product,
+     {kNoOption, kNoOption, kNoOption}},
     {"sampled", Family::surfaceVoxels, "Eisemann & Decoret 2006, section 2", Guarantee::exact,
      "One voxel for each column centre that a triangle covers (top-left rule): equal to a scan of column centres bit for bit; "
      "steep and sub-cell triangles leave holes.",

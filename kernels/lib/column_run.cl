@@ -1,6 +1,8 @@
 // lib/column_run.cl: the cells that a triangle touches, as runs along z, column by column (Schwarz & Seidel 2010, section 3: the
 // triangle's box, its plane, and the edge functions of its three projections decide a cell; each bounds z, or x, from both sides by a
 // function linear in the others). Eight triangles are set up together, a lane each; then eight columns of one are evaluated together.
+// A cell is the cube for the conservative surface. For the thin one its place is taken by the octahedron of its face centres, of which
+// every line reaches max(|slopes|, 1) / 2 beyond the centre.
 //
 // Whatever its slope, a line bounds the triangle once its offset is taken over all three vertices: a slope that rounding has spoilt,
 // as a sliver's, loses no cell. Beyond that a bound moves outward by 8 delta (1 + |slope|), where delta is what a coordinate may be
@@ -38,21 +40,29 @@ typedef struct {
     real8 planeX, planeY, planeLow, planeHigh;  // z at (x, y) between planeLow + planeX x + planeY y and planeHigh + ..., exclusive
 } Runs;
 
-// A line of slope `slope` by the triangle's corners (v, u): its lowest offset for the near corners of cells, its highest for the far.
-INLINE void run_line(real8 slope, const real8 v[3], const real8 u[3], real8 margin, real8* low, real8* high) {
-    const real8 a = fma(-slope, v[0], u[0]), b = fma(-slope, v[1], u[1]), c = fma(-slope, v[2], u[2]);
-    const real8 out = fma(margin, fabs(slope), margin);
-    *low = lanes_min3(a, b, c) + lanes_min(slope, LANES_OF(0)) - out;
-    *high = lanes_max3(a, b, c) + lanes_max(slope, LANES_OF(0)) + (out + LANES_OF(1));
+// Bounds of the cells that a strip with offsets `least` to `most` meets; `sum`, `low` and `high` of its slopes: their sum, the sum of
+// those below 0, of those above; `steepest`: the greatest magnitude among them and 1.
+INLINE void run_strip(bool thin, real8 least, real8 most, real8 sum, real8 low, real8 high, real8 steepest, real8 out, real8* first,
+                      real8* end) {
+    const real8 half_ = LANES_OF(0.5f), centre = half_ * sum + half_, reach = half_ * steepest;
+    *first = least + (thin ? centre - reach : low) - out;
+    *end = most + (thin ? centre + reach : high + LANES_OF(1)) + out;
+}
+
+// A line of slope `slope` by the triangle's corners (v, u), as bounds.
+INLINE void run_line(bool thin, real8 slope, const real8 v[3], const real8 u[3], real8 margin, real8* low, real8* high) {
+    const real8 a = fma(-slope, v[0], u[0]), b = fma(-slope, v[1], u[1]), c = fma(-slope, v[2], u[2]), zero = LANES_OF(0);
+    run_strip(thin, lanes_min3(a, b, c), lanes_max3(a, b, c), slope, lanes_min(slope, zero), lanes_max(slope, zero),
+              lanes_max(fabs(slope), LANES_OF(1)), fma(margin, fabs(slope), margin), low, high);
 }
 
 // The projection with corners (v, u), in ascending order of v. `inverse`: of v[2] - v[0], v[1] - v[0], v[2] - v[1].
-INLINE void run_projection(Bounds* bounds, const real8 v[3], const real8 u[3], const real8 inverse[3], real8 margin) {
+INLINE void run_projection(bool thin, Bounds* bounds, const real8 v[3], const real8 u[3], const real8 inverse[3], real8 margin) {
     const real8 along = (u[2] - u[0]) * inverse[0], first = (u[1] - u[0]) * inverse[1], second = (u[2] - u[1]) * inverse[2];
     real8 alongLow, alongHigh, firstLow, firstHigh, secondLow, secondHigh;
-    run_line(along, v, u, margin, &alongLow, &alongHigh);
-    run_line(first, v, u, margin, &firstLow, &firstHigh);
-    run_line(second, v, u, margin, &secondLow, &secondHigh);
+    run_line(thin, along, v, u, margin, &alongLow, &alongHigh);
+    run_line(thin, first, v, u, margin, &firstLow, &firstHigh);
+    run_line(thin, second, v, u, margin, &secondLow, &secondHigh);
     // The edge over all of v bounds one side; the other two that where the vertex between them lies.
     const real8 beyond = fma(along, v[1] - v[0], u[0]);
     bounds->lowSlope[0] = u[1] > beyond ? along : first;
@@ -103,7 +113,7 @@ INLINE int8 run_extent(const real8 v[3], uint size, real8 slack, int8* first, in
 INLINE real8 run_most(const real8 v[3]) { return lanes_max3(fabs(v[0]), fabs(v[1]), fabs(v[2])); }
 
 // Sets up eight triangles of the mesh, of which only the live ones (-1) count.
-INLINE void run_setup(const vitrail_GridDesc* grid, global const float* positions, global const uint* indices, uint vertexCount,
+INLINE void run_setup(bool thin, const vitrail_GridDesc* grid, global const float* positions, global const uint* indices, uint vertexCount,
                       const uint triangles[LANES], int8 live, Runs* runs) {
     real8 x[3], y[3], z[3];
     const int8 good = triangle_eight(grid, positions, indices, vertexCount, triangles, x, y, z);
@@ -131,20 +141,19 @@ INLINE void run_setup(const vitrail_GridDesc* grid, global const float* position
     runs->planeY = ny * inverse;
     real8 offset[3];
     for (int k = 0; k < 3; ++k) offset[k] = fma(-runs->planeX, x[k], fma(-runs->planeY, y[k], z[k]));
-    const real8 out = margin * (LANES_OF(1) + fabs(runs->planeX) + fabs(runs->planeY));
-    runs->planeLow = lanes_min3(offset[0], offset[1], offset[2]) + lanes_min(runs->planeX, LANES_OF(0)) +
-                     lanes_min(runs->planeY, LANES_OF(0)) - out;
-    runs->planeHigh = lanes_max3(offset[0], offset[1], offset[2]) + lanes_max(runs->planeX, LANES_OF(0)) +
-                      lanes_max(runs->planeY, LANES_OF(0)) + (out + LANES_OF(1));
+    const real8 px = runs->planeX, py = runs->planeY, zero = LANES_OF(0);
+    run_strip(thin, lanes_min3(offset[0], offset[1], offset[2]), lanes_max3(offset[0], offset[1], offset[2]), px + py,
+              lanes_min(px, zero) + lanes_min(py, zero), lanes_max(px, zero) + lanes_max(py, zero),
+              lanes_max3(fabs(px), fabs(py), LANES_OF(1)), margin * (LANES_OF(1) + fabs(px) + fabs(py)), &runs->planeLow, &runs->planeHigh);
 
     real8 inverses[3];
     run_sort(y, x, z);
     run_inverses(y, inverses);
-    run_projection(&runs->xOfY, y, x, inverses, margin);
-    run_projection(&runs->zOfY, y, z, inverses, margin);
+    run_projection(thin, &runs->xOfY, y, x, inverses, margin);
+    run_projection(thin, &runs->zOfY, y, z, inverses, margin);
     run_sort(x, z, y);
     run_inverses(x, inverses);
-    run_projection(&runs->zOfX, x, z, inverses, margin);
+    run_projection(thin, &runs->zOfX, x, z, inverses, margin);
 }
 
 // The runs of the triangle in `lane` at eight places v along the axis that bounds what: first and end, within [least, most].

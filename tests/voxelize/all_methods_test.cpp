@@ -25,13 +25,13 @@ class EveryVoxelizer : public ::testing::TestWithParam<const char*> {
 protected:
     Voxelizer method(Channel channels = Channel::none) const { return voxelizerByName(GetParam(), {}, channels); }
 };
-INSTANTIATE_TEST_SUITE_P(Methods, EveryVoxelizer, ::testing::Values("conservative", "sampled", "points"),
+INSTANTIATE_TEST_SUITE_P(Methods, EveryVoxelizer, ::testing::Values("conservative", "thin", "sampled", "points"),
                          [](const auto& info) { return std::string(info.param); });
 
 TEST(Methods, AllAreTested) {
     for (const Method& row : methods())
         if (row.family == Family::surfaceVoxels) {
-            EXPECT_TRUE(row.name == "conservative" || row.name == "sampled" || row.name == "points") << row.name;
+            EXPECT_TRUE(row.name == "conservative" || row.name == "thin" || row.name == "sampled" || row.name == "points") << row.name;
         }
 }
 
@@ -52,7 +52,9 @@ Fragments fragmentsOf(const Mesh& mesh, const Grid& grid, std::string_view metho
             continue;
         }
         const Mesh one = test::triangles({p[0], p[1], p[2]});
-        const VoxelBits bits = method == "sampled" ? reference::sampled(one, grid) : reference::conservative(one, grid).possible;
+        const VoxelBits bits = method == "sampled" ? reference::sampled(one, grid)
+                               : method == "thin" ? voxelize(queue(), one, grid, Thin{}).host()
+                                                  : reference::conservative(one, grid).possible;
         for (unsigned z = 0; z < size.z; ++z)
             for (unsigned y = 0; y < size.y; ++y)
                 for (unsigned x = 0; x < size.x; ++x)

@@ -9,11 +9,12 @@
 #include <vitrail/voxelize/conservative.h>
 #include <vitrail/voxelize/points.h>
 #include <vitrail/voxelize/sampled.h>
+#include <vitrail/voxelize/thin.h>
 
 namespace vitrail {
 inline namespace v0 {
 
-using Voxelizer = std::variant<Conservative, Sampled, Points>;
+using Voxelizer = std::variant<Conservative, Thin, Sampled, Points>;
 
 /// The voxelizer called `name` with options "safetyFactor=2"; others keep their defaults.
 /// Throws Error (badOption) that lists what there is.

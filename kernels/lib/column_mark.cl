@@ -1,0 +1,113 @@
+// lib/column_mark.cl: marks the runs of lib/column_run.cl; the body of column_mark and thin_mark.
+#ifndef VITRAIL_LIB_COLUMN_MARK
+#define VITRAIL_LIB_COLUMN_MARK
+#include "lib/column_run.cl"
+#include "lib/mark.cl"
+#pragma OPENCL FP_CONTRACT OFF
+
+#define COLUMN_FEW 4  // a triangle over so few columns is smaller than a voxel or two, and its neighbours share most of its cells
+
+// Where the cells of one triangle go.
+typedef struct {
+    const vitrail_GridDesc* grid;
+    global uint* bits;         // unless there are channels
+    const Channels* channels;
+    long normal[3];
+    uint material, triangle;
+} Mark;
+
+// Marks slices [first, end) of eight columns, x from a multiple of eight on; zFirst <= them < zEnd.
+INLINE void column_mark_row(const Mark* mark, int x, int y, int8 first, int8 end, int zFirst, int zEnd,
+                                  const bool often) {
+    const size_t word = bits_column(mark->grid, (uint)x, (uint)y);
+    if (!mark->channels) {
+        for (int block = zFirst >> 5; block <= (zEnd - 1) >> 5; ++block)
+            bits_set_row(mark->bits + word + (size_t)block * VITRAIL_WORDS_PER_TILE, bits_masks(first - block * 32, end - block * 32),
+                         often);
+        return;
+    }
+    for (int lane = 0; lane < LANES; ++lane)
+        for (int z = lanes_int_at(&first, lane); z < lanes_int_at(&end, lane); ++z)
+            channels_add(mark->channels, word + (size_t)(z >> 5) * VITRAIL_WORDS_PER_TILE + lane, (uint)z & 31u, mark->normal,
+                         mark->material, mark->triangle);
+}
+
+// Marks the cells of the triangle in `lane` in columns [xLeast, xMost] x [yLeast, yMost].
+INLINE void column_columns(const Runs* runs, int lane, int xLeast, int xMost, int yLeast, int yMost, const Mark* mark,
+                                 const bool often) {
+    const int x0 = lanes_int_at(&runs->first[0], lane), y0 = lanes_int_at(&runs->first[1], lane), z0 = lanes_int_at(&runs->first[2], lane);
+    const int height = lanes_int_at(&runs->last[2], lane) + 1 - z0;
+    const real planeX = lanes_at(&runs->planeX, lane), planeY = lanes_at(&runs->planeY, lane);
+    const real planeLow = lanes_at(&runs->planeLow, lane), planeHigh = lanes_at(&runs->planeHigh, lane);
+    for (int group = yLeast; group <= yMost; group += LANES) {
+        const real8 rows = LANES_IOTA + LANES_OF(group - y0);
+        int8 xFirst, xEnd, zFirst, zEnd;
+        run_bounds(&runs->xOfY, lane, rows, REAL(xLeast - x0), REAL(xMost + 1 - x0), &xFirst, &xEnd);
+        run_bounds(&runs->zOfY, lane, rows, REAL(0), REAL(height), &zFirst, &zEnd);
+        const int groupRows = min(LANES, yMost + 1 - group);
+        for (int tile = xLeast & ~7; tile <= xMost; tile += LANES) {
+            const real8 columns = LANES_IOTA + LANES_OF(tile - x0);
+            const int8 columnsInt = LANES_IOTA_INT + (tile - x0);
+            int8 first, end;
+            run_bounds(&runs->zOfX, lane, columns, REAL(0), REAL(height), &first, &end);
+            for (int row = 0; row < groupRows; ++row) {
+                const int rowFirst = lanes_int_at(&xFirst, row), rowEnd = lanes_int_at(&xEnd, row);
+                const int rowLow = lanes_int_at(&zFirst, row), rowHigh = lanes_int_at(&zEnd, row);
+                if (rowFirst >= rowEnd || rowLow >= rowHigh || rowFirst >= tile + LANES - x0 || rowEnd <= tile - x0) continue;
+                const real y = REAL(group + row - y0);
+                const real8 low = fma(LANES_OF(planeX), columns, LANES_OF(fma(planeY, y, planeLow)));
+                const real8 high = fma(LANES_OF(planeX), columns, LANES_OF(fma(planeY, y, planeHigh)));
+                const int8 lowInt = lanes_int(lanes_min(lanes_max(low, LANES_OF(0)), LANES_OF(height)));
+                const int8 highInt = lanes_int(lanes_min(lanes_max(high, LANES_OF(0)), LANES_OF(height)));
+                const int8 from = max(max(lowInt, first), (int8)(rowLow));
+                const int8 to = min(min(highInt, end), (int8)(rowHigh)) & (columnsInt >= rowFirst) & (columnsInt < rowEnd);
+                column_mark_row(mark, tile, group + row, from + z0, to + z0, z0 + rowLow, z0 + rowHigh, often);
+            }
+        }
+    }
+}
+
+// One of eight triangles, or one block of it when it is big (block >= 0).
+INLINE void column_triangle(bool thin, const Runs* runs, int lane, global const float* positions, global const uint* indices, uint vertexCount,
+                                  global const uint* materials, int block, Mark* mark, global uint2* tasks, uint taskCapacity,
+                                  global uint* status) {
+    const int state = lanes_int_at(&runs->state, lane);
+    if (state == 0) return;
+    if ((state & (RUN_SKIPPED | RUN_OUTSIDE | RUN_DEGENERATE)) && block < 0 && !mark->channels)
+        atomic_inc(status + ((state & RUN_SKIPPED) ? STATUS_SKIPPED : (state & RUN_OUTSIDE) ? STATUS_OUTSIDE : STATUS_DEGENERATE));
+    if (!(state & RUN_INSIDE)) return;
+    int xLeast = lanes_int_at(&runs->first[0], lane), xMost = lanes_int_at(&runs->last[0], lane);
+    int yLeast = lanes_int_at(&runs->first[1], lane), yMost = lanes_int_at(&runs->last[1], lane);
+    const int zLeast = lanes_int_at(&runs->first[2], lane), zMost = lanes_int_at(&runs->last[2], lane);
+    // Within one column a triangle touches every cell of its box.
+    if (!thin && !mark->channels && !(state & RUN_CLIPPED) && xLeast == xMost && yLeast == yMost) {
+        bits_set_run(mark->bits, bits_column(mark->grid, (uint)xLeast, (uint)yLeast), (uint)zLeast, (uint)zMost);
+        return;
+    }
+    if (tasks_columns(&xLeast, &xMost, &yLeast, &yMost, block, tasks, taskCapacity, status, mark->triangle)) return;
+    if (mark->channels) {
+        uint corner[3];
+        triangle_corners(positions, indices, vertexCount, mark->triangle, corner);
+        if (mark->channels->normalSum) channels_normal(triangle_normal(positions, corner), mark->normal);
+        if (mark->channels->material && materials) mark->material = materials[mark->triangle];
+    }
+    if ((xMost - xLeast + 1) * (yMost - yLeast + 1) <= COLUMN_FEW)
+        column_columns(runs, lane, xLeast, xMost, yLeast, yMost, mark, true);
+    else
+        column_columns(runs, lane, xLeast, xMost, yLeast, yMost, mark, false);
+}
+
+#define COLUMN_MARK(thin)                                                                                                            \
+    const Channels channels = MARK_CHANNELS;                                                                                         \
+    Mark mark = {&grid, bits, rank ? &channels : 0, {0, 0, 0}, 0u, 0u};                                                              \
+    MARK_EIGHTS(triangles, blocks, live, {                                                                                           \
+        Runs runs;                                                                                                                   \
+        run_setup(thin, &grid, positions, indices, vertexCount, triangles, live, &runs);                                             \
+        for (int lane = 0; lane < LANES; ++lane) {                                                                                   \
+            mark.triangle = triangles[lane];                                                                                         \
+            column_triangle(thin, &runs, lane, positions, indices, vertexCount, materials, blocks[lane], &mark, tasks, taskCapacity, \
+                            status);                                                                                                 \
+        }                                                                                                                            \
+    })
+
+#endif
