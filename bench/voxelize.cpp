@@ -1,4 +1,5 @@
-// bench/voxelize.cpp: the family surfaceVoxels: every method of methods.h and the native lines, over meshes and resolutions, in turns. A
+// bench/voxelize.cpp: a family of voxelizers, surfaceVoxels or solidVoxels: every method of methods.h and, of surfaces, the
+// native lines, over meshes and resolutions, in turns. A
 // benchmark is <mesh>/<resolution>/<method>[/<option>=<value>]; its time is kernelMs (of a native line the call), and in the same record are
 // wallMs and, unless --times_only is given, the errors against the truth. Meshes: generated ones, and real ones where VITRAIL_DATA names a
 // folder of them; those with a number behind a plus sign were subdivided so many times.
@@ -31,6 +32,7 @@ namespace {
 
 using namespace vitrail;
 
+constexpr Family kFamily = Family::VITRAIL_BENCH_FAMILY;  // of this program, see CMakeLists.txt
 constexpr std::uint32_t kResolutions[] = {64, 128, 256, 512, 1024};
 /// Where a method's options are swept; elsewhere they have their defaults.
 constexpr std::uint32_t kSweepResolution = 256;
@@ -97,7 +99,10 @@ public:
     /// come in random order, and the truth takes longer than they do.
     const benchmark::UserCounters& errors(const std::string& group, const std::string& name, const Loaded& loaded, const Grid& grid) {
         if (const auto found = errors_.find(name); found != errors_.end()) return found->second;
-        const reference::Truth touched = reference::conservative(loaded.mesh, grid), thin = reference::thin(loaded.mesh, grid);
+        const reference::Truth thin = reference::thin(loaded.mesh, grid);
+        const bool solid = kFamily == Family::solidVoxels;
+        const VoxelBits inside = solid ? reference::solid(loaded.mesh, grid) : VoxelBits(grid);
+        const reference::Truth touched = solid ? reference::Truth{inside, inside} : reference::conservative(loaded.mesh, grid);
         for (const auto& [member, bits] : groups_.at(group)) {
             const VoxelBits result = bits(*this, loaded, grid);
             const VoxelDifference difference = compareVoxels(result, touched.certain, touched.possible);
@@ -225,7 +230,7 @@ void addAll(Bench& bench, const std::vector<Input>& meshes) {
         for (const std::uint32_t resolution : kResolutions) {
             const std::string group = input.name + "/" + std::to_string(resolution) + "/";
             for (const Method& method : methods()) {
-                if (method.family != Family::surfaceVoxels) continue;
+                if (method.family != kFamily) continue;
                 for (const std::string& choice : optionChoices(method, resolution)) {
                     const Case one{group + std::string(method.name) + (choice.empty() ? "" : "/" + choice), group, input, resolution};
                     const Voxelizer voxelizer =
@@ -239,6 +244,7 @@ void addAll(Bench& bench, const std::vector<Input>& meshes) {
             const std::pair<const char*, NativeLine> lines[] = {{"native_separating_axis", native::voxelizeSeparatingAxis},
                                                                 {"native_edge_runs", native::voxelizeEdgeRuns}};
             for (const auto& [name, line] : lines) {
+                if (kFamily != Family::surfaceVoxels) break;
                 const Case one{group + name, group, input, resolution};
                 bench.judgeLater(group, one.name, [line = line](Bench& b, const Bench::Loaded& loaded, const Grid& grid) {
                     return nativeBits(line, b, loaded, grid);

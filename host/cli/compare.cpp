@@ -140,10 +140,19 @@ int runCompare(const Options& options) {
     }
 
     const Truths truth = bar.wait("the truth, in double precision", [&] { return truths(mesh, grid); });
+    std::optional<VoxelBits> inside;  // the truth of solids
     const auto score = [&](Json& record, const VoxelBits& bits) {
-        bar.wait("comparing " + record["method"].get<std::string>(), [&] {
-            addErrors(record, compareVoxels(bits, truth.certain, truth.possible), compareVoxels(bits, truth.certainThin, truth.possibleThin),
-                      checkWatertight(bits, truth.certainThin));
+        const std::string method = record["method"];
+        const Method* row = findMethod(method);
+        if (row != nullptr && row->family == Family::solidVoxels && !inside)
+            inside = bar.wait("the truth, in double precision", [&] { return reference::solid(mesh, grid); });
+        bar.wait("comparing " + method, [&] {
+            if (row != nullptr && row->family == Family::solidVoxels)
+                addErrors(record, compareVoxels(bits, *inside, *inside), compareVoxels(bits, *inside, *inside),
+                          checkWatertight(bits, truth.certainThin));
+            else
+                addErrors(record, compareVoxels(bits, truth.certain, truth.possible),
+                          compareVoxels(bits, truth.certainThin, truth.possibleThin), checkWatertight(bits, truth.certainThin));
             return true;
         });
     };
@@ -190,7 +199,7 @@ void addCompare(CLI::App& app, Run& run) {
     CLI::App* verb = app.add_subcommand("compare", "voxelizers, or another tool's voxels, against the truth: times and errors");
     auto options = std::make_shared<Options>();
     verb->add_option("MESH", options->mesh, ".ply, .stl, .off, .obj, .gltf, .glb or a JSON scene")->required();
-    verb->add_option("--methods", options->methods, methodNames(Family::surfaceVoxels) + " [all, or none with --against]")
+    verb->add_option("--methods", options->methods, voxelizerNames() + " [all, or none with --against]")
         ->delimiter(',')
         ->allow_extra_args(false)
         ->type_name("A,B");

@@ -59,6 +59,7 @@ Json record(const DeviceInfo& device) {
 const char* name(Family family) {
     switch (family) {
         case Family::surfaceVoxels: return "surfaceVoxels";
+        case Family::solidVoxels: return "solidVoxels";
         case Family::glass: return "glass";
         case Family::shadow: return "shadow";
     }
@@ -124,6 +125,7 @@ Json record(const VoxelReport& report) {
             {"degenerateTriangles", report.degenerateTriangles},
             {"skippedTriangles", report.skippedTriangles},
             {"outsideTriangles", report.outsideTriangles},
+            {"openColumns", report.openColumns},
             {"grid", vectorRecord(report.grid)},
             {"occupied", report.occupied},
             {"kernelMs", report.kernelMs},

@@ -168,7 +168,7 @@ void addRender(CLI::App& app, Run& run) {
     verb->add_option("--colour", options->colour, "of --effect voxels: normal, count, or difference to the truth (red missing, blue extra)")
         ->check(CLI::IsMember({"normal", "count", "difference"}))
         ->capture_default_str();
-    verb->add_option("--voxelizer", options->voxelizer, "of --effect voxels: " + methodNames(Family::surfaceVoxels))->capture_default_str()->type_name("NAME");
+    verb->add_option("--voxelizer", options->voxelizer, "of --effect voxels: " + voxelizerNames())->capture_default_str()->type_name("NAME");
     verb->add_option("-r,--voxels", options->voxelResolution, "of --effect voxels: along the longest axis")->check(CLI::Range(1, 4096))->capture_default_str();
     options->device.add(*verb);
     verb->add_flag("--json", options->json, "the report as JSON on standard output");

@@ -128,6 +128,8 @@ std::string methodNames(Family family) {
     return names;
 }
 
+std::string voxelizerNames() { return methodNames(Family::surfaceVoxels) + ", " + methodNames(Family::solidVoxels); }
+
 Mesh loadMesh(const std::string& file) {
     Mesh mesh = load(file);
     for (const std::string& repair : mesh.repairs) note(file + ": " + repair);

@@ -70,6 +70,7 @@ private:
 
 /// "conservative, sampled, points"
 std::string methodNames(Family family);
+std::string voxelizerNames();
 
 /// Reads a mesh, and says on standard error what its reader mended.
 Mesh loadMesh(const std::string& file);

@@ -141,7 +141,7 @@ void addVoxelize(CLI::App& app, Run& run) {
     verb->add_option("-o,--output", options->output,
                      ".vdb (OpenVDB), .vox (MagicaVoxel), .npy (uint8 [z][y][x]), .raw (bits, with .raw.json) or .ply (cubes)")
         ->type_name("OUT");
-    verb->add_option("--method", options->method, methodNames(Family::surfaceVoxels) + "; `vitrail info --methods` tells about them")
+    verb->add_option("--method", options->method, voxelizerNames() + "; `vitrail info --methods` tells about them")
         ->capture_default_str()
         ->type_name("NAME");
     options->grid.add(*verb, 256);

@@ -355,8 +355,12 @@ Range columnsOf(bool perspective, const std::array<double, 3>& x, const std::arr
 
 }  // namespace
 
-VoxelBits sampled(const MeshView& mesh, const Grid& grid) {
-    VoxelBits bits(grid);
+namespace {
+
+/// Calls hit(column, row, slice coordinate) for every crossing of the line of a column, of triangles that are not all outside the slices
+/// or, with everyDepth, of all; by many threads at a time.
+template <class Hit>
+void scanColumns(const MeshView& mesh, const Grid& grid, bool everyDepth, const Hit& hit) {
     const vitrail_GridDesc& g = grid.desc();
     const bool perspective = g.kind == VITRAIL_GRID_PERSPECTIVE;
     const double depth = g.size.z;
@@ -366,7 +370,7 @@ VoxelBits sampled(const MeshView& mesh, const Grid& grid) {
             if (!cornersOf(mesh, t, pWorld)) continue;
             const std::array<Sample, 3> v{sampleOf(grid, pWorld[0]), sampleOf(grid, pWorld[1]), sampleOf(grid, pWorld[2])};
             const double lowest = std::min({v[0].z, v[1].z, v[2].z}), highest = std::max({v[0].z, v[1].z, v[2].z});
-            if (!(highest >= 0) || !(lowest <= depth)) continue;
+            if (!everyDepth && (!(highest >= 0) || !(lowest <= depth))) continue;
             const Range columns = columnsOf(perspective, {v[0].x, v[1].x, v[2].x}, v, g.size.x, g.extent.x);
             const Range rows = columnsOf(perspective, {v[0].y, v[1].y, v[2].y}, v, g.size.y, g.extent.y);
             for (std::int64_t j = rows.first; j <= rows.last; ++j) {
@@ -383,13 +387,44 @@ VoxelBits sampled(const MeshView& mesh, const Grid& grid) {
                     double z = v[0].z + (V * (v[1].z - v[0].z) + W * (v[2].z - v[0].z)) / ((U + V) + W);
                     if (!(z >= lowest)) z = lowest;
                     if (z > highest) z = highest;
-                    if (z < 0 || z > depth) continue;
-                    const double slice = z == depth ? depth - 1 : std::floor(z);
-                    mark(bits, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), static_cast<std::uint32_t>(slice));
+                    hit(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), z);
                 }
             }
         }
     });
+}
+
+}  // namespace
+
+VoxelBits sampled(const MeshView& mesh, const Grid& grid) {
+    VoxelBits bits(grid);
+    const double depth = grid.size().z;
+    scanColumns(mesh, grid, false, [&](std::uint32_t i, std::uint32_t j, double z) {
+        if (z < 0 || z > depth) return;
+        mark(bits, i, j, static_cast<std::uint32_t>(z == depth ? depth - 1 : std::floor(z)));
+    });
+    return bits;
+}
+
+VoxelBits solid(const MeshView& mesh, const Grid& grid) {
+    const Uint3 size = grid.size();
+    std::vector<std::vector<double>> crossings(std::size_t(size.x) * size.y);
+    std::mutex mutex;
+    scanColumns(mesh, grid, true, [&](std::uint32_t i, std::uint32_t j, double z) {
+        const std::lock_guard lock(mutex);
+        crossings[std::size_t(j) * size.x + i].push_back(z);
+    });
+    VoxelBits bits(grid);
+    for (std::uint32_t j = 0; j < size.y; ++j)
+        for (std::uint32_t i = 0; i < size.x; ++i) {
+            std::vector<double>& column = crossings[std::size_t(j) * size.x + i];
+            std::sort(column.begin(), column.end());
+            std::size_t before = 0;
+            for (std::uint32_t k = 0; k < size.z; ++k) {
+                while (before < column.size() && column[before] < k + 0.5) ++before;
+                if (before % 2 != 0) bits.set(i, j, k);
+            }
+        }
     return bits;
 }
 

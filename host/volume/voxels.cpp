@@ -144,6 +144,7 @@ const VoxelReport& Voxels::report() const {
             report.degenerateTriangles = status[detail::kStatusDegenerate];
             report.skippedTriangles = status[detail::kStatusSkipped];
             report.outsideTriangles = status[detail::kStatusOutside];
+            report.openColumns = status[detail::kStatusOpen];
         }
         state_->report = report;
     }

@@ -57,7 +57,10 @@ bool makeNamed(Voxelizer& out, std::string_view name, std::span<const std::strin
     using M = std::variant_alternative_t<I, Voxelizer>;
     if (name != M::name) return false;
     M method;
-    method.channels = channels;
+    if constexpr (requires { method.channels; })
+        method.channels = channels;
+    else if (channels != Channel::none)
+        throw Error(ErrorCode::unsupported, {std::string(name) + " has no channels", "", "", "another voxelizer, or none of its channels"});
     for (const std::string& option : options) setOption(method, option);
     detail::checkOptions(method);
     out = method;
@@ -74,7 +77,7 @@ Voxelizer voxelizerByName(std::string_view name, std::span<const std::string> op
     if (found) return out;
     std::string all;
     for (const Method& method : methods())
-        if (method.family == Family::surfaceVoxels) all += (all.empty() ? "" : ", ") + std::string(method.name);
+        if (isVoxelizer(method)) all += (all.empty() ? "" : ", ") + std::string(method.name);
     fail("there is no voxelizer \"" + std::string(name) + "\"", all);
 }
 

@@ -8,7 +8,7 @@
 namespace vitrail {
 inline namespace v0 {
 
-enum class Family { surfaceVoxels, glass, shadow };
+enum class Family { surfaceVoxels, solidVoxels, glass, shadow };
 enum class Guarantee { conservative, watertight, exact, none };
 enum class Role { product, baseline };
 
@@ -51,6 +51,11 @@ inline constexpr Method kMethods[] = {
      Role::product,
      {MethodOption{"safetyFactor", 1.0, 0.25, 16.0, "1", "gamma of eq. 1; higher misses less and costs about its square"}, kNoOption,
       kNoOption}},
+    {"solid", Family::solidVoxels, "Schwarz & Seidel 2010, section 4; Eisemann & Decoret 2008", Guarantee::exact,
+     "Cells whose centre is inside by the parity of their column: equal to a scan of column centres bit for bit; columns that an open mesh "
+     "leaves open are counted.",
+     false, true, Role::product,
+     {kNoOption, kNoOption, kNoOption}},
     {"planes", Family::glass, "Chang et al. 2013, section 5.2, with exact steps", Guarantee::none,
      "Every crossing from one plane and the gradient of its normal in a voxel; walls thinner than a voxel are lost.", false, false,
      Role::product,
@@ -58,6 +63,9 @@ inline constexpr Method kMethods[] = {
 };
 
 constexpr std::span<const Method> methods() { return kMethods; }
+
+/// Whether it makes Voxels of a mesh.
+constexpr bool isVoxelizer(const Method& method) { return method.family == Family::surfaceVoxels || method.family == Family::solidVoxels; }
 
 /// The row of `name`, or null.
 constexpr const Method* findMethod(std::string_view name) {

@@ -15,6 +15,9 @@
 // Buffers of the channels asked for; null in a launch that sets bits.
 #define MARK_CHANNELS {bits, rank, counts, normalSums, materialIds, list, cursor}
 
+// A voxelizer without channels takes no notice of their buffers.
+#define MARK_WITHOUT_CHANNELS (void)materials, (void)rank, (void)counts, (void)normalSums, (void)materialIds, (void)list, (void)cursor
+
 // Statement for every triangle, block >= 0 when it is a task.
 #define MARK_EACH(triangle, block, statement)                                                                          \
     const size_t markFrom = groups ? get_global_id(0) : get_global_id(0) * (size_t)perItem;                            \

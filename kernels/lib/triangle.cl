@@ -10,6 +10,7 @@
 #define STATUS_DEGENERATE 1
 #define STATUS_SKIPPED 2
 #define STATUS_OUTSIDE 3
+#define STATUS_OPEN 4
 
 typedef struct {
     Point a, b, c;

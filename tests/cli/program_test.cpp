@@ -86,7 +86,7 @@ TEST_F(Program, EveryVerbHasHelp) {
 TEST_F(Program, HelpNamesEveryMethodAndOption) {
     const std::string help = run("voxelize --help").out;
     for (const vitrail::Method& method : vitrail::methods()) {
-        if (method.family != vitrail::Family::surfaceVoxels) continue;
+        if (!vitrail::isVoxelizer(method)) continue;
         EXPECT_NE(help.find(method.name), std::string::npos) << method.name;
         for (const vitrail::MethodOption& option : method.options) {
             if (option.name.empty()) continue;
@@ -125,7 +125,7 @@ TEST_F(Program, UnknownMethodListsWhatThereIs) {
         const Result result = run(arguments);
         EXPECT_EQ(result.code, 2);
         for (const vitrail::Method& method : vitrail::methods()) {
-            if (method.family != vitrail::Family::surfaceVoxels) continue;
+            if (!vitrail::isVoxelizer(method)) continue;
             EXPECT_NE(result.err.find(method.name), std::string::npos) << result.err;
         }
     }

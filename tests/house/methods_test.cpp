@@ -38,7 +38,7 @@ std::string quoted(char mark, std::string_view name) {
 TEST(MethodTable, RowsHaveTheirFiles) {
     for (const Method& row : methods()) {
         const std::string stem(row.name);
-        if (row.family == Family::surfaceVoxels) {
+        if (isVoxelizer(row)) {
             EXPECT_TRUE(holds("include/vitrail/voxelize", stem + ".h")) << stem;
             EXPECT_TRUE(holds("host/voxelize", stem + ".cpp")) << stem;
             EXPECT_TRUE(holds("kernels/voxelize", stem + ".cl")) << stem;
@@ -54,7 +54,7 @@ TEST(MethodTable, RowsAreReachableByName) {
         EXPECT_EQ(findMethod(row.name), &row);
         EXPECT_FALSE(row.paper.empty()) << row.name;
         EXPECT_FALSE(row.says.empty()) << row.name;
-        if (row.family == Family::surfaceVoxels) {
+        if (isVoxelizer(row)) {
             EXPECT_EQ(name(voxelizerByName(row.name)), row.name);
         }
     }
@@ -64,7 +64,7 @@ TEST(MethodTable, RowsAreReachableByName) {
 // The table's options are the type's members, with its defaults inside their range.
 TEST(MethodTable, OptionsAreThoseOfTheTypes) {
     for (const Method& row : methods()) {
-        if (row.family != Family::surfaceVoxels) continue;
+        if (!isVoxelizer(row)) continue;
         std::set<std::string> fromTable, fromType;
         for (const MethodOption& option : row.options) {
             if (option.name.empty()) continue;

@@ -28,8 +28,9 @@ int main() {
         for (const Precision precision : {Precision::best, Precision::single}) {
             const test::WithPrecision set(queue, precision);
             for (const Method& row : methods()) {
-                if (row.family != Family::surfaceVoxels) continue;
-                const Voxelizer method = voxelizerByName(row.name, {}, Channel::count | Channel::normal | Channel::material);
+                if (!isVoxelizer(row)) continue;
+                const Voxelizer method = voxelizerByName(
+                    row.name, {}, row.channels ? Channel::count | Channel::normal | Channel::material : Channel::none);
                 std::vector<Grid> grids{Grid::box(Float3(0), 1.0f, size)};
                 if (row.cameraGrids) grids.push_back(test::cameraGrids({Float3(0), Float3(size)}, Uint3(7, 6, 5))[2]);
                 for (const Grid& grid : grids) {

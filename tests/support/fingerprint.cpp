@@ -33,16 +33,17 @@ std::string fingerprint(Queue& queue, const Mesh& mesh) {
     for (const Precision precision : {Precision::best, Precision::single}) {
         const WithPrecision set(queue, precision);
         for (const Method& row : methods()) {
-            if (row.family != Family::surfaceVoxels) continue;
+            if (!isVoxelizer(row)) continue;
             std::vector<Grid> grids = cameraGrids(bounds, {70, 60, 50});
             if (!row.cameraGrids) grids.erase(grids.begin() + 1, grids.end());
             grids.push_back(Grid::fit(bounds, 100));
             for (const Grid& grid : grids) {
-                const Voxels v = voxelize(queue, mesh, grid,
-                                          voxelizerByName(row.name, {}, Channel::count | Channel::normal | Channel::material));
+                const Channel channels = row.channels ? Channel::count | Channel::normal | Channel::material : Channel::none;
+                const Voxels v = voxelize(queue, mesh, grid, voxelizerByName(row.name, {}, channels));
                 lines += std::string(row.name) + (precision == Precision::single ? " single " : " ") + grid.text() + ":" +
-                         hashOf(v.host().words) + hashOf(v.counts()) + hashOf(v.normalBuffer().read(queue)) +
-                         hashOf(v.materials()) + "\n";
+                         hashOf(v.host().words);
+                if (row.channels) lines += hashOf(v.counts()) + hashOf(v.normalBuffer().read(queue)) + hashOf(v.materials());
+                lines += "\n";
             }
         }
     }

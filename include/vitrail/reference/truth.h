@@ -30,6 +30,9 @@ Truth thin(const MeshView& mesh, const Grid& grid);
 /// stated in host/reference/truth.cpp.
 VoxelBits sampled(const MeshView& mesh, const Grid& grid);
 
+/// Cells whose centre has an odd number of crossings before it in that scan: the oracle of Solid.
+VoxelBits solid(const MeshView& mesh, const Grid& grid);
+
 }  // namespace reference
 }  // namespace v0
 }  // namespace vitrail

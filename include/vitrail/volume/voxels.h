@@ -51,6 +51,7 @@ struct VoxelReport : CallReport {
     std::uint64_t degenerateTriangles = 0;  ///< of zero area; they mark the cells of their segment or point where the method can
     std::uint64_t skippedTriangles = 0;     ///< with an index out of range or a vertex that is not finite: marked nothing
     std::uint64_t outsideTriangles = 0;     ///< wholly outside the grid
+    std::uint64_t openColumns = 0;          ///< of a solid: that cross the surface an odd number of times; what is inside them is a guess
     Uint3 grid{0};
     std::uint64_t occupied = 0;
 };

@@ -9,12 +9,13 @@
 #include <vitrail/voxelize/conservative.h>
 #include <vitrail/voxelize/points.h>
 #include <vitrail/voxelize/sampled.h>
+#include <vitrail/voxelize/solid.h>
 #include <vitrail/voxelize/thin.h>
 
 namespace vitrail {
 inline namespace v0 {
 
-using Voxelizer = std::variant<Conservative, Thin, Sampled, Points>;
+using Voxelizer = std::variant<Conservative, Thin, Sampled, Points, Solid>;
 
 /// The voxelizer called `name` with options "safetyFactor=2"; others keep their defaults.
 /// Throws Error (badOption) that lists what there is.

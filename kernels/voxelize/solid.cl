@@ -1,0 +1,74 @@
+// voxelize/solid.cl: the cells whose centre is inside, by parity (vitrail/voxelize/solid.h): each crossing of a column's line toggles the
+// first cell whose centre lies beyond it, and a sweep over the column makes of toggles what is inside.
+#include "lib/column_sample.cl"
+#include "lib/mark.cl"
+#include "lib/range.cl"
+#pragma OPENCL FP_CONTRACT OFF
+
+// beyond: a bit a column, toggled by crossings after the last cell's centre.
+static inline void solid_triangle(const vitrail_GridDesc* grid, global uint* beyond, global const float* positions, global const uint* indices,
+                                  uint vertexCount, uint triangle, int block, global uint* bits, global uint2* tasks, uint taskCapacity,
+                                  global uint* status) {
+    uint corner[3];
+    const bool counting = block < 0;
+    if (!triangle_corners(positions, indices, vertexCount, triangle, corner)) {
+        if (counting) atomic_inc(status + STATUS_SKIPPED);
+        return;
+    }
+    Samples s;
+    int xLeast, xMost, yLeast, yMost;
+    const int found = sample_triangle(grid, positions, corner, true, &s, &xLeast, &xMost, &yLeast, &yMost);
+    if (counting && found == SAMPLE_OUTSIDE)
+        atomic_inc(status + STATUS_OUTSIDE);
+    else if (counting && sample_degenerate(&s))
+        atomic_inc(status + STATUS_DEGENERATE);
+    if (found != SAMPLE_COVERS) return;
+    if (tasks_columns(&xLeast, &xMost, &yLeast, &yMost, block, tasks, taskCapacity, status, triangle)) return;
+    const real last = REAL(grid->size.z) - REAL(0.5f);
+    SAMPLE_EACH(grid, &s, xLeast, xMost, yLeast, yMost, x, y, z, {
+        if (z < last) {
+            const uint cell = z < REAL(0.5f) ? 0u : (uint)(z + REAL(0.5f));
+            atomic_xor(bits + bits_word(grid, (uint)x, (uint)y, cell), 1u << (cell & 31u));
+        } else {
+            const size_t column = (size_t)y * grid->tilesX * 8u + (uint)x;
+            atomic_xor(beyond + column / 32u, 1u << (column & 31u));
+        }
+    })
+}
+
+kernel void solid_mark(const vitrail_GridDesc grid, global uint* beyond, MARK_PARAMETERS) {
+    MARK_WITHOUT_CHANNELS;
+    MARK_EIGHTS(triangles, blocks, live, {
+        live &= sample_eight(&grid, positions, indices, vertexCount, triangles, true);
+        for (int lane = 0; lane < LANES; ++lane)
+            if (lanes_int_at(&live, lane))
+                solid_triangle(&grid, beyond, positions, indices, vertexCount, triangles[lane], blocks[lane], bits, tasks, taskCapacity, status);
+    })
+}
+
+// Toggles to insides, for eight columns of a row of tiles at a time. A column is open when its toggles, with those beyond it, are odd.
+kernel void solid_sweep(const vitrail_GridDesc grid, global uint* bits, global const uint* beyond, global uint* status, ulong count,
+                        uint perItem) {
+    uint odd = 0u;
+    FOR_RANGE(row, count, perItem) {
+        const size_t tile = row / 8u, y = tile / grid.tilesX * 8u + row % 8u, column = (y * grid.tilesX + tile % grid.tilesX) * 8u;
+        global uint8* words = (global uint8*)(bits + tile * grid.size.w * VITRAIL_WORDS_PER_TILE + row % 8u * 8u);
+        uint8 carry = (uint8)(0u);
+        for (uint w = 0u; w < grid.size.w; ++w) {
+            uint8 inside = words[w * (VITRAIL_WORDS_PER_TILE / 8u)];
+            inside ^= inside << 1;
+            inside ^= inside << 2;
+            inside ^= inside << 4;
+            inside ^= inside << 8;
+            inside ^= inside << 16;
+            inside ^= carry;
+            carry = as_uint8(as_int8(inside) >> 31);
+            const uint slices = min(grid.size.z - w * 32u, 32u);
+            words[w * (VITRAIL_WORDS_PER_TILE / 8u)] = inside & (0xffffffffu >> (32u - slices));
+        }
+        const uint8 after = (uint8)(beyond[column / 32u] >> (column & 31u)) >> (uint8)(0u, 1u, 2u, 3u, 4u, 5u, 6u, 7u);
+        const uint8 unclosed = (carry ^ after) & 1u;
+        odd += unclosed.s0 + unclosed.s1 + unclosed.s2 + unclosed.s3 + unclosed.s4 + unclosed.s5 + unclosed.s6 + unclosed.s7;
+    }
+    if (odd != 0u) atomic_add(status + STATUS_OPEN, odd);
+}
