@@ -14,6 +14,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <vitrail/core/error.h>
@@ -40,6 +41,7 @@ constexpr std::uint32_t kSweepResolution = 256;
 struct Input {
     std::string name;
     std::function<Mesh()> make;
+    bool scaling = false;  ///< one shape at several numbers of triangles: at kSweepResolution alone
 };
 
 std::vector<Input> inputs() {
@@ -51,6 +53,8 @@ std::vector<Input> inputs() {
     shape("gyroid", {});
     shape("tree", {});
     shape("terrain", {"cells=256"});
+    for (const unsigned times : {1u, 2u, 3u, 4u, 5u})  // 16,384 to 4.2 million triangles
+        all.push_back({"torus+" + std::to_string(times), [=] { return subdivide(makeShape("torus"), times); }, true});
     const char* folder = std::getenv("VITRAIL_DATA");
     const auto file = [&](const char* name, unsigned times) {
         if (folder == nullptr) return;
@@ -67,12 +71,29 @@ std::vector<Input> inputs() {
 
 double milliseconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double, std::milli>(d).count(); }
 
+/// Of a copy of 256 MiB by all threads, the best of five.
+double measureCopy(unsigned threads) {
+    const std::size_t part = (std::size_t(256) << 20) / threads;
+    std::vector<std::vector<char>> from(threads, std::vector<char>(part, 1)), to(threads, std::vector<char>(part, 2));
+    double best = 0;
+    for (int round = 0; round < 5; ++round) {
+        const auto start = std::chrono::steady_clock::now();
+        {
+            std::vector<std::jthread> all;
+            for (unsigned t = 0; t < threads; ++t) all.emplace_back([&, t] { std::copy(from[t].begin(), from[t].end(), to[t].begin()); });
+        }
+        best = std::max(best, 2.0 * double(part) * threads / (milliseconds(std::chrono::steady_clock::now() - start) * 1e-3));
+    }
+    return best;
+}
+
 /// The device, and what is made when first needed and kept: meshes on both sides, and the errors of every benchmark.
 class Bench {
 public:
     explicit Bench(bool withoutErrors) : timesOnly(withoutErrors), device_(Device::select()), queue_(device_) {}
 
     const bool timesOnly;
+    const double copyBandwidth = measureCopy(std::max(1u, std::thread::hardware_concurrency()));  ///< bytes read and written a second
 
     struct Loaded {
         Mesh mesh;
@@ -114,6 +135,7 @@ public:
             counters["leaks"] = static_cast<double>(tight.leaks);
             counters["watertight"] = tight.holds();
             counters["occupied"] = static_cast<double>(difference.result);
+            counters["touchedWords"] = static_cast<double>(result.words.size()) - double(std::ranges::count(result.words, 0u));
         }
         return errors_.at(name);
     }
@@ -144,6 +166,9 @@ void addCounters(benchmark::State& state, Bench& bench, const Case& one, const B
         const benchmark::UserCounters& errors = bench.errors(one.group, one.name, loaded, grid);
         state.counters.insert(errors.begin(), errors.end());
         state.counters["bytesPerVoxel"] = bytes / std::max(1.0, errors.at("occupied").value);
+        // What must move at least: the mesh read, the grid cleared, and of it the touched words written.
+        const double least = double(loaded.onDevice.bytes()) + double(grid.wordCount()) * 4 + errors.at("touchedWords").value * 4;
+        state.counters["limitMs"] = least / bench.copyBandwidth * 1e3;
     }
     state.counters["triangles"] = static_cast<double>(loaded.mesh.triangleCount());
     state.counters["resolution"] = one.resolution;
@@ -212,9 +237,9 @@ void add(const std::string& name, std::function<void(benchmark::State&)> run) {
 }
 
 /// The method's defaults and, where options are swept, each option at powers of two of its default.
-std::vector<std::string> optionChoices(const Method& method, std::uint32_t resolution) {
+std::vector<std::string> optionChoices(const Method& method, std::uint32_t resolution, bool scaling) {
     std::vector<std::string> choices{""};
-    if (resolution != kSweepResolution) return choices;
+    if (resolution != kSweepResolution || scaling) return choices;
     for (const MethodOption& option : method.options)
         for (const double factor : {0.5, 2.0, 4.0})
             if (const double value = option.byDefault * factor; !option.name.empty() && value >= option.least && value <= option.most) {
@@ -228,10 +253,11 @@ std::vector<std::string> optionChoices(const Method& method, std::uint32_t resol
 void addAll(Bench& bench, const std::vector<Input>& meshes) {
     for (const Input& input : meshes) {
         for (const std::uint32_t resolution : kResolutions) {
+            if (input.scaling && resolution != kSweepResolution) continue;
             const std::string group = input.name + "/" + std::to_string(resolution) + "/";
             for (const Method& method : methods()) {
                 if (method.family != kFamily) continue;
-                for (const std::string& choice : optionChoices(method, resolution)) {
+                for (const std::string& choice : optionChoices(method, resolution, input.scaling)) {
                     const Case one{group + std::string(method.name) + (choice.empty() ? "" : "/" + choice), group, input, resolution};
                     const Voxelizer voxelizer =
                         voxelizerByName(method.name, std::span(&choice, choice.empty() ? 0 : 1));
@@ -275,6 +301,7 @@ int main(int argc, char** argv) {
         const cli::Json machine = cli::machineRecord(bench.deviceInfo());
         for (const auto& [key, value] : machine.items())
             benchmark::AddCustomContext(key, value.is_string() ? value.get<std::string>() : value.dump());
+        benchmark::AddCustomContext("copyGBs", std::to_string(bench.copyBandwidth * 1e-9));
         benchmark::RunSpecifiedBenchmarks();
         benchmark::Shutdown();
     } catch (const std::exception& error) {

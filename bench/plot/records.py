@@ -14,6 +14,7 @@ class Point:
     wall_ms: float
     errors: dict = field(default_factory=dict)  # missing, extra, missingThin, watertight, leaks: fractions of one, counts
     triangles: int = 0
+    limit_ms: float = 0  # what must move at least, at the bandwidth of a copy; 0: not known
     occupied: int = 0
 
     @property
@@ -45,6 +46,7 @@ def _from_benchmark(document):
                 wall_ms=one.get("wallMs", one["real_time"] * scale),
                 errors={name: one[name] for name in ERRORS if name in one},
                 triangles=int(one.get("triangles", 0)),
+                limit_ms=one.get("limitMs", 0),
                 occupied=int(one.get("occupied", 0)),
             )
         )

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""bench/plot/summary.py: how a method stands to the native lines: ratios of medians of one run, and their geometric mean.
+"""bench/plot/summary.py: how a method stands to the native lines: ratios of medians of one run, and their geometric mean; how all stand to
+the memory limit; and how their time grows.
 
     summary.py out/bench/voxelize.json [--method conservative]
 
@@ -12,6 +13,56 @@ import math
 import records
 
 LINES = ("native_separating_axis", "native_edge_runs")
+
+
+def fit(xs, ys):
+    """Exponent of the power law through the points, by least squares of logarithms."""
+    xs, ys = [math.log(x) for x in xs], [math.log(y) for y in ys]
+    mx, my = sum(xs) / len(xs), sum(ys) / len(ys)
+    return sum((x - mx) * (y - my) for x, y in zip(xs, ys)) / sum((x - mx) ** 2 for x in xs)
+
+
+def table(title, head, rows):
+    widths = [max(len(row[i]) for row in [head, *rows]) for i in range(len(head))]
+    print(f"\n{title}")
+    for row in [head, *rows]:
+        print("  ".join(cell.ljust(width) if i == 0 else cell.rjust(width) for i, (cell, width) in enumerate(zip(row, widths))))
+
+
+def print_limits(points, grids, methods):
+    by_key = {(p.mesh, p.resolution, p.method): p for p in points if not p.option and p.limit_ms > 0}
+    rows = []
+    for mesh, resolution in grids:
+        cells = [by_key.get((mesh, resolution, method)) for method in methods]
+        if any(cells):
+            limit = max(p.limit_ms for p in cells if p)
+            rows.append((mesh, str(resolution), f"{limit:.3g}", *(f"{p.kernel_ms / p.limit_ms:.1f}" if p else "-" for p in cells)))
+    if rows:
+        table("kernel time over the time that the least traffic takes (mesh read, grid cleared, touched words written; at the bandwidth of a copy)",
+              ("mesh", "resolution", "limit ms", *methods), rows)
+
+
+def print_growth(points, methods):
+    rows = []
+    for method in methods:
+        mine = [p for p in points if p.method == method and not p.option and p.triangles > 0]
+        shapes = {}
+        for p in mine:
+            shapes.setdefault((p.mesh.split("+")[0], p.resolution), []).append(p)
+        most = max(shapes.values(), key=len, default=[])
+        row = [method, "-", "-"]
+        if len(most) > 2:
+            row[1] = f"{fit([p.triangles for p in most], [p.kernel_ms for p in most]):.2f}"
+        exponents = []
+        for mesh in dict.fromkeys(p.mesh for p in mine):
+            grown = [p for p in mine if p.mesh == mesh and p.occupied > 0]
+            if len(grown) > 2:
+                exponents.append(fit([p.occupied for p in grown], [p.kernel_ms for p in grown]))
+        if exponents:
+            row[2] = f"{min(exponents):.2f} to {max(exponents):.2f}"
+        rows.append(tuple(row))
+    table("exponents of growth: kernel time in triangles of one shape, and in voxels over resolutions, least to most of the meshes",
+          ("method", "triangles", "voxels"), rows)
 
 
 def main():
@@ -52,6 +103,9 @@ def main():
         print(line(row))
     print("-" * len(line(head)))
     print(line(rows[-1]))
+    methods = list(dict.fromkeys(p.method for p in points))
+    print_limits(points, grids, methods)
+    print_growth(points, methods)
 
 
 if __name__ == "__main__":
