@@ -1,5 +1,11 @@
 #include <vitrail/voxelize/points.h>
 
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include <vitrail/core/error.h>
+
 #include "voxelize/prepare.h"
 
 namespace vitrail {
@@ -28,6 +34,42 @@ Voxels voxelize(Queue& queue, const MeshInput& mesh, const Grid& grid, const Poi
 
 std::uint64_t estimate(const MeshInput& mesh, const Grid& grid, const Points& method) {
     return detail::estimateVoxelizer(mesh, grid, method.channels) + kWords * sizeof(std::uint32_t);
+}
+
+float safetyFactorFor(double missing, const MeshView& mesh, const Grid& grid) {
+    constexpr double kShare = 0.24;
+    const auto refuse = [&](const std::string& what, const std::string& remedy) {
+        throw Error(ErrorCode::unsupported, {"safetyFactorFor: " + what, "grid: " + grid.text(), "", remedy});
+    };
+    const double factor = kShare / missing;
+    if (!(factor > 1 && factor <= 8)) {
+        char text[160];
+        std::snprintf(text, sizeof text, "a share of %g is beyond what safety factors from 1 to 8 leave missing, %g to %g", missing, kShare / 8,
+                      kShare);
+        refuse(text, factor > 8 ? "conservative, which misses nothing" : "points as it is, at safetyFactor 1");
+    }
+    double sum = 0;
+    std::uint64_t edges = 0;
+    for (std::uint64_t t = 0; t < mesh.triangleCount(); ++t) {
+        std::array<Double3, 3> corner;
+        bool good = true;
+        for (int k = 0; k < 3; ++k) {
+            const std::uint64_t vertex = mesh.indices.empty() ? 3 * t + std::uint64_t(k) : mesh.indices[3 * t + std::uint64_t(k)];
+            good = good && vertex < mesh.positions.count;
+            if (good) corner[std::size_t(k)] = grid.toVoxel(mesh.positions[vertex]);
+        }
+        for (std::size_t e = 0; good && e < 3; ++e)
+            if (const double length = glm::length(corner[(e + 1) % 3] - corner[e]); std::isfinite(length)) {
+                sum += length;
+                ++edges;
+            }
+    }
+    if (edges == 0 || sum <= double(edges)) {
+        char text[96];
+        std::snprintf(text, sizeof text, "edges of %.3g cells on the mean, where the law holds from 1 cell on", edges == 0 ? 0.0 : sum / double(edges));
+        refuse(text, "safetyFactor 1, or conservative, which costs little more here");
+    }
+    return static_cast<float>(factor);
 }
 
 }  // namespace v0

@@ -192,6 +192,41 @@ TEST(Points, MissLittleOfScans) {
     }
 }
 
+// The share that is asked for is kept, and not by much.
+TEST(Points, MissTheShareThatTheirSafetyFactorIsFor) {
+    const Mesh sphere = test::closedSphere(Float3(0), 5, Float3(0.4f, 1, 2), 32, 16),
+               torus = test::closedTorus(Float3(0), 5, 2, Float3(0.3f, 1.1f, 2), 40, 20);
+    for (const Mesh* mesh : {&sphere, &torus})
+        for (const unsigned longest : {48u, 96u})
+            for (const double missing : {0.18, 0.1, 0.05, 0.03}) {
+                const Grid grid = Grid::fit(mesh->bounds(), longest);
+                const Points method{.safetyFactor = safetyFactorFor(missing, *mesh, grid)};
+                const reference::Truth truth = reference::conservative(*mesh, grid);
+                const double share = compareVoxels(voxelize(queue(), *mesh, grid, method).host(), truth.certain, truth.possible).missingShare();
+                EXPECT_LE(share, missing) << longest;
+                EXPECT_GE(share, missing / 1.5) << longest;
+            }
+}
+
+TEST(Points, NoSafetyFactorIsGivenWhereTheLawIsNotKnownToHold) {
+    const Mesh sphere = test::closedSphere(Float3(0), 5, Float3(0), 32, 16);
+    const Grid fine = Grid::fit(sphere.bounds(), 96), coarse = Grid::fit(sphere.bounds(), 8);
+    const auto refused = [&](double missing, const Grid& grid) {
+        try {
+            (void)safetyFactorFor(missing, sphere, grid);
+        } catch (const Error& error) {
+            return error.code() == ErrorCode::unsupported;
+        }
+        return false;
+    };
+    EXPECT_TRUE(refused(0.3, fine));
+    EXPECT_TRUE(refused(0.01, fine));
+    EXPECT_TRUE(refused(0, fine));
+    EXPECT_TRUE(refused(std::nan(""), fine));
+    EXPECT_TRUE(refused(0.1, coarse));
+    EXPECT_FALSE(refused(0.1, fine));
+}
+
 TEST(Points, SkipWhatIsTooLargeAndCountIt) {
     const Grid grid = Grid::box(Float3(0), 1.0f, Uint3(16));
     const Mesh mesh = test::triangles({{-1e9f, -1e9f, 3},
