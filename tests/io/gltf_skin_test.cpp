@@ -197,6 +197,28 @@ TEST(GltfRig, AnimationFaultsAreErrors) {
     broken([](Document& d, Json&) { d.json["skins"][0]["joints"] = Json::array(); }, "");
 }
 
+// Damage anywhere in a file is an Error or a scene, never a crash.
+TEST(GltfRig, DamagedFilesAreErrorsOrScenes) {
+    const std::string whole = animated().binary();
+    unsigned errors = 0;
+    const auto attempt = [&](const std::string& bytes) {
+        try {
+            const Scene scene = fromText(bytes, {}, "glb");
+            if (scene.skin) check(*scene.skin);
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code() == ErrorCode::badFile || error.code() == ErrorCode::unsupported, true) << error.what();
+            ++errors;
+        }
+    };
+    for (std::size_t cut = 0; cut < whole.size(); cut += 7) attempt(whole.substr(0, cut));
+    EXPECT_EQ(errors, (whole.size() + 6) / 7);
+    for (std::size_t i = 20; i < whole.size(); i += 3) {
+        std::string damaged = whole;
+        damaged[i] = static_cast<char>(damaged[i] ^ (i % 2 == 0 ? 0x01 : 0x7f));
+        attempt(damaged);
+    }
+}
+
 // Many samplers that name the same keys do not unfold to more than the file can pay for.
 TEST(GltfRig, KeysThatUnfoldWithoutEndAreRefused) {
     Document d = animated();
