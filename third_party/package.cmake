@@ -18,7 +18,7 @@ function(vitrail_component name)
   install(EXPORT vitrail-${name} NAMESPACE vitrail:: DESTINATION ${package_folder} COMPONENT ${name})
 endfunction()
 
-vitrail_component(core core scene grid volume voxelize raster light metrics vitrail)
+vitrail_component(core core scene grid volume deform voxelize raster light metrics vitrail)
 vitrail_component(vdb vdb)
 vitrail_component(reference reference)
 vitrail_component(io io)

@@ -1,5 +1,5 @@
-// io/gltf.cpp: glTF 2.0 as one mesh in world space with its materials. Skins stand in the pose of the node hierarchy, morph
-// targets at their default weights; animations and tangents are not read.
+// io/gltf.cpp: glTF 2.0 as one mesh in world space with its materials. Skins stand in the pose of the node hierarchy (and are kept
+// beside it: gltf_skin.cpp), morph targets at their default weights; tangents are not read.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,12 +7,11 @@
 #include <optional>
 #include <utility>
 
-#include <glm/gtc/quaternion.hpp>
-
 #include <vitrail/core/error.h>
 #include <vitrail/io/image.h>
 
 #include "io/gltf_document.h"
+#include "io/gltf_skin.h"
 #include "io/readers.h"
 #include "io/transform.h"
 
@@ -33,7 +32,8 @@ struct Placed {
 
 class GltfReader : private GltfDocument {
 public:
-    explicit GltfReader(const Source& source) : GltfDocument(source), source_(source), model_(model()) {}
+    explicit GltfReader(const Source& source)
+        : GltfDocument(source), source_(source), model_(model()), rig_(*this, nodes_, scene_.mesh.repairs, canMove()) {}
 
     Scene read() {
         placeNodes();
@@ -49,11 +49,14 @@ public:
     }
 
 private:
+    bool canMove() const { return !source_.meshOnly && (!model_.skins.empty() || !animations().empty()); }
+
     // ---- nodes ----
 
     void placeNodes() {
         const std::size_t count = model_.nodes.size();
-        std::vector<int> parent(count, -1);
+        std::vector<int>& parent = nodes_.parent;
+        parent.assign(count, -1);
         for (std::size_t n = 0; n < count; ++n) {
             for (int child : model_.nodes[n].children) {
                 if (child < 0 || static_cast<std::size_t>(child) >= count) {
@@ -68,11 +71,11 @@ private:
                 known = static_cast<int>(n);
             }
         }
-        const std::vector<std::size_t> order = checkCycles();
-        world_.resize(count);
-        for (std::size_t n : order) {
-            const glm::dmat4 local = localTransform(n);
-            world_[n] = parent[n] < 0 ? local : world_[static_cast<std::size_t>(parent[n])] * local;
+        nodes_.order = checkCycles();
+        nodes_.world.resize(count);
+        for (std::size_t n : nodes_.order) {
+            const glm::dmat4 local = localTransform(*this, n);
+            nodes_.world[n] = parent[n] < 0 ? local : nodes_.world[static_cast<std::size_t>(parent[n])] * local;
         }
     }
 
@@ -109,36 +112,6 @@ private:
         }
         std::reverse(finished.begin(), finished.end());
         return finished;
-    }
-
-    glm::dmat4 localTransform(std::size_t n) const {
-        const tinygltf::Node& node = model_.nodes[n];
-        const auto expect = [&](const std::vector<double>& values, std::size_t size, const char* what) {
-            if (!values.empty() && values.size() != size) {
-                fail(std::string(what) + " has " + std::to_string(values.size()) + " numbers instead of " + std::to_string(size),
-                     at("nodes", n));
-            }
-            return !values.empty();
-        };
-        if (expect(node.matrix, 16, "matrix")) {
-            glm::dmat4 m;
-            for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
-            return m;
-        }
-        glm::dmat4 m(1.0);
-        if (expect(node.rotation, 4, "rotation")) {
-            const glm::dquat q(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
-            const double length = glm::length(q);
-            if (!(length > 1e-12) || !std::isfinite(length)) fail("rotation is no quaternion", at("nodes", n));
-            m = glm::mat4_cast(q / length);
-        }
-        if (expect(node.scale, 3, "scale")) {
-            for (int c = 0; c < 3; ++c) m[c] *= node.scale[static_cast<std::size_t>(c)];
-        }
-        if (expect(node.translation, 3, "translation")) {
-            m[3] = glm::dvec4(node.translation[0], node.translation[1], node.translation[2], 1.0);
-        }
-        return m;
     }
 
     // The primitives that the scene shows, in the order of its nodes.
@@ -231,7 +204,7 @@ private:
                  (light.type == "directional" ? ", another one came first" : ", only a directional one is read"));
             return;
         }
-        const Float3 direction(unitOrZero(glm::dvec3(world_[n][2])));  // it shines along the node's -z
+        const Float3 direction(unitOrZero(glm::dvec3(nodes_.world[n][2])));  // it shines along the node's -z
         if (direction == Float3(0.0f) || !(light.intensity >= 0) || light.intensity > 1e30) {
             warn("node " + std::to_string(n) + ": a light without direction or intensity is left out");
             return;
@@ -248,7 +221,7 @@ private:
 
     void readCamera(std::size_t n, const Bounds& bounds) {
         const tinygltf::Camera& from = model_.cameras[static_cast<std::size_t>(model_.nodes[n].camera)];
-        const glm::dmat4& world = world_[n];
+        const glm::dmat4& world = nodes_.world[n];
         Camera camera;
         camera.eye = Float3(glm::dvec3(world[3]));
         const Float3 forward = unitOrZero(-glm::dvec3(world[2])), up = unitOrZero(glm::dvec3(world[1]));
@@ -491,6 +464,7 @@ private:
         }
         if (mesh.indices.empty()) fail("no triangles in the scene", "", "a file with a mesh that a node of the scene shows");
         settleUnusedVertices();
+        scene_.skin = rig_.finish(anyNormals_);
         if (cameraNode_) readCamera(*cameraNode_, mesh.bounds());
     }
 
@@ -519,8 +493,9 @@ private:
         Vertices added;
         added.first = static_cast<std::uint32_t>(mesh.positions.size());
         added.hasNormals = !normals.empty();
-        const std::vector<glm::dmat4> poses = skinPoses(one, count);
-        const glm::dmat4& rigid = world_[one.node];
+        const GltfPoses follows = rig_.pose(one.node, from, count, place);
+        const std::vector<glm::dmat4>& poses = follows.poses;
+        const glm::dmat4& rigid = nodes_.world[one.node];
         added.mirrored.assign(poses.empty() ? 1 : count, 0);
         glm::dmat3 linear, turn;
         for (std::size_t i = 0; i < count; ++i) {
@@ -533,6 +508,10 @@ private:
             mesh.positions.push_back(Float3(glm::dvec3(m * glm::dvec4(glm::dvec3(positions.float3(i)), 1.0))));
             if (anyNormals_)
                 mesh.normals.push_back(normals.empty() ? Float3(0.0f) : unitOrZero(turn * glm::dvec3(normals.float3(i))));
+            if (rig_.wanted()) {
+                rig_.addVertex(positions.float3(i), normals.empty() ? Float3(0.0f) : unitOrZero(glm::dvec3(normals.float3(i))),
+                               follows.followed[poses.empty() ? 0 : i]);
+            }
             if (anyTexcoords_) {
                 const Float2 uv = texcoords.empty() ? Float2(0.0f) : texcoords.float2(i);
                 mesh.texcoords.push_back(std::isfinite(uv.x) && std::isfinite(uv.y) ? uv : Float2(0.0f));
@@ -567,84 +546,6 @@ private:
                 }
             }
         }
-    }
-
-    // One matrix a vertex: joints where the nodes put them, blended by weights. Empty for what has no skin; the transform of the
-    // skinned node itself has no say.
-    std::vector<glm::dmat4> skinPoses(const Placed& one, std::size_t count) {
-        const int index = model_.nodes[one.node].skin;
-        if (index < 0 || !has(one, "JOINTS_0") || !has(one, "WEIGHTS_0")) return {};
-        const std::vector<glm::dmat4> palette = jointPalette(static_cast<std::size_t>(index));
-        std::vector<glm::dmat4> poses(count, glm::dmat4(0.0));
-        std::vector<double> sums(count, 0.0);
-        std::vector<std::uint32_t> firstJoint(count, 0);
-        const std::string place = primitivePlace(one);
-        for (int set = 0; set < 16; ++set) {
-            const std::string jointName = "JOINTS_" + std::to_string(set), weightName = "WEIGHTS_" + std::to_string(set);
-            if (!has(one, jointName) || !has(one, weightName)) break;
-            const Attribute joints = attribute(primitive(one).attributes.at(jointName), place + "." + jointName, {4});
-            const Attribute weights = attribute(primitive(one).attributes.at(weightName), place + "." + weightName, {4});
-            if (joints.count != count || weights.count != count) fail("joints, weights and positions differ in count", place);
-            for (std::size_t k = 0; k < count * 4; ++k) {
-                const float weight = weights.values[k];
-                const bool counts = weight > 0.0f && std::isfinite(weight);
-                if (!counts && (set != 0 || k % 4 != 0)) continue;
-                const float joint = joints.values[k];
-                if (!(joint >= 0.0f && joint < static_cast<float>(palette.size()))) {
-                    if (!counts) continue;
-                    fail("vertex " + std::to_string(k / 4) + " follows joint " + std::to_string(static_cast<long long>(joint)) +
-                             " of " + std::to_string(palette.size()),
-                         place + "." + jointName, "a skin with all joints that its vertices name");
-                }
-                const auto j = static_cast<std::uint32_t>(joint);
-                if (set == 0 && k % 4 == 0) firstJoint[k / 4] = j;
-                if (!counts) continue;
-                poses[k / 4] += palette[j] * static_cast<double>(weight);
-                sums[k / 4] += static_cast<double>(weight);
-            }
-        }
-        std::size_t zero = 0, scaled = 0;
-        for (std::size_t i = 0; i < count; ++i) {
-            if (sums[i] > 0) {
-                scaled += std::abs(sums[i] - 1.0) > 0.02;
-                poses[i] /= sums[i];
-            } else {
-                ++zero;
-                poses[i] = palette[firstJoint[i]];
-            }
-        }
-        if (zero != 0)
-            repaired(place + ": " + std::to_string(zero) + " vertices whose joint weights sum to zero follow their first joint");
-        if (scaled != 0)
-            repaired(place + ": the joint weights of " + std::to_string(scaled) + " vertices were scaled to sum to one");
-        return poses;
-    }
-
-    std::vector<glm::dmat4> jointPalette(std::size_t index) {
-        const tinygltf::Skin& skin = model_.skins[index];
-        const std::string place = at("skins", index);
-        if (skin.joints.empty()) fail("it has no joints", place);
-        Attribute inverse;
-        if (skin.inverseBindMatrices >= 0) {
-            inverse = attribute(skin.inverseBindMatrices, place + ".inverseBindMatrices", {16});
-            if (inverse.count < skin.joints.size()) {
-                fail(std::to_string(inverse.count) + " inverse bind matrices for " + std::to_string(skin.joints.size()) +
-                         " joints",
-                     place);
-            }
-        }
-        std::vector<glm::dmat4> palette;
-        for (std::size_t j = 0; j < skin.joints.size(); ++j) {
-            const int node = skin.joints[j];
-            if (node < 0 || static_cast<std::size_t>(node) >= world_.size())
-                fail("there is no node " + std::to_string(node), place);
-            glm::dmat4 bind(1.0);
-            if (!inverse.empty()) {
-                for (int k = 0; k < 16; ++k) bind[k / 4][k % 4] = inverse.values[j * 16 + static_cast<std::size_t>(k)];
-            }
-            palette.push_back(world_[static_cast<std::size_t>(node)] * bind);
-        }
-        return palette;
     }
 
     void repaired(const std::string& sentence) {
@@ -685,7 +586,7 @@ private:
             }
             if (vertices.mirrored[vertices.mirrored.size() == 1 ? 0 : a]) std::swap(b, c);
             if (anyNormals_ && !vertices.hasNormals) {
-                flatTriangle(vertices.first, {a, b, c});
+                flatTriangle(vertices.first, {a, b, c}, vertices.mirrored[vertices.mirrored.size() == 1 ? 0 : a] != 0);
             } else {
                 for (std::uint32_t v : {a, b, c}) mesh.indices.push_back(vertices.first + v);
             }
@@ -707,15 +608,21 @@ private:
     }
 
     // Corners of its own with the face normal, as glTF asks for where normals are missing and other primitives have them.
-    void flatTriangle(std::uint32_t first, std::array<std::uint32_t, 3> corners) {
+    void flatTriangle(std::uint32_t first, std::array<std::uint32_t, 3> corners, bool mirrored) {
         Mesh& mesh = scene_.mesh;
         const glm::dvec3 a(mesh.positions[first + corners[0]]), b(mesh.positions[first + corners[1]]),
             c(mesh.positions[first + corners[2]]);
         const Float3 normal = unitOrZero(glm::cross(b - a, c - a));
         if (mesh.positions.size() + 3 > kMostCounted)
             fail("more than 2^32 vertices", "", "fewer instances", ErrorCode::unsupported);
+        Float3 atRest(0.0f);  // of the winding before a mirror turned it
+        if (rig_.wanted()) {
+            const auto p = [&](std::size_t k) { return glm::dvec3(rig_.position(first + corners[k])); };
+            atRest = unitOrZero(glm::cross(p(1) - p(0), p(2) - p(0)) * (mirrored ? -1.0 : 1.0));
+        }
         for (std::uint32_t corner : corners) {
             const std::size_t v = first + corner;
+            if (rig_.wanted()) rig_.repeatVertex(v, atRest);
             mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
             mesh.positions.push_back(Float3(mesh.positions[v]));
             mesh.normals.push_back(normal);
@@ -754,7 +661,8 @@ private:
     const Source& source_;
     Scene scene_;
     const tinygltf::Model& model_;
-    std::vector<glm::dmat4> world_;  // of every node
+    GltfNodes nodes_;
+    GltfRig rig_;
     std::optional<std::size_t> cameraNode_;
     bool lightRead_ = false;
     std::vector<int> baseTextures_, texcoordSets_;  // by material: image or -1, and the set that places it

@@ -95,8 +95,10 @@ void GltfDocument::parse() {
     takeList("buffers", buffers_);
     takeList("images", images_);
     loaded_.resize(buffers_.size());
-    // Nothing below looks at these; pictures and buffers would be opened by tinygltf.
-    for (const char* unread : {"animations", "extras"}) document_.erase(unread);
+    // Nothing below looks at these; pictures and buffers would be opened by tinygltf, and animations are read from the JSON.
+    if (source_.meshOnly) document_.erase("animations");
+    takeList("animations", animations_);
+    document_.erase("extras");
 
     const std::string rest = document_.dump();
     if (rest.size() > 0xffffffffu) fail("more than 4 GiB of JSON", "", "buffers in files of their own");
@@ -119,6 +121,13 @@ void GltfDocument::parse() {
     }
     if (!good) fail(lines.empty() ? "not a glTF document" : lines.front(), "", "a check with the Khronos glTF validator");
     for (const std::string& line : lines) warn(line);
+}
+
+std::size_t GltfDocument::bytes() const {
+    std::size_t sum = source_.bytes.size();
+    for (const auto& buffer : loaded_)
+        if (buffer) sum += buffer->size();
+    return sum;
 }
 
 std::string_view GltfDocument::openBinary() {

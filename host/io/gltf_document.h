@@ -45,6 +45,8 @@ public:
 
     const tinygltf::Model& model() const { return model_; }
     const nlohmann::json& images() const { return images_; }
+    const nlohmann::json& animations() const { return animations_; }  ///< objects, otherwise unchecked; none where only a mesh is wanted
+    std::size_t bytes() const;  ///< of the file and of the buffers that were opened
     std::vector<std::string> warnings;  ///< each sentence once
 
     void warn(const std::string& sentence);
@@ -73,7 +75,7 @@ private:
     std::size_t checkedCount(const tinygltf::Accessor& a, const std::string& place);
 
     const Source& source_;
-    nlohmann::json document_, buffers_, images_;
+    nlohmann::json document_, buffers_, images_, animations_;
     std::optional<std::span<const std::byte>> binary_;
     std::vector<std::optional<std::vector<std::byte>>> loaded_;  // buffers from files and data URIs
     tinygltf::Model model_;

@@ -70,6 +70,14 @@ Scene loadSceneFromMemory(std::span<const std::byte> bytes, const std::string& f
     return read(readerOf(format, name), {bytes, name, folder, false});
 }
 
+std::vector<Animation> loadAnimations(const std::filesystem::path& file, const Skin& skin) {
+    if (readerOf(file.extension().string(), file.string()).read != io_detail::readGltf)
+        throw Error(ErrorCode::unsupported, {"animations are read from glTF files only", file.string(), "", "a .gltf or .glb file"});
+    const std::vector<std::byte> bytes = io_detail::readFile(file);
+    const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+    return io_detail::readGltfAnimations({bytes, file.string(), folder, false}, skin);
+}
+
 }  // namespace v0
 
 namespace io_detail {

@@ -24,6 +24,8 @@ Scene readStl(const Source& source);   // stl.cpp
 Scene readOff(const Source& source);   // off.cpp
 Scene readObj(const Source& source);   // obj.cpp: tinyobjloader
 Scene readGltf(const Source& source);  // gltf.cpp: tinygltf; .gltf and .glb told apart by their first bytes
+/// The animations of a glTF file, for nodes of `skin` that bear the same names.  gltf_skin.cpp
+std::vector<Animation> readGltfAnimations(const Source& source, const Skin& skin);
 Scene readJsonScene(const Source& source);  // json_scene.cpp
 
 /// Whole file, at most `limit` bytes. Throws Error (badFile).  files.cpp

@@ -25,6 +25,16 @@ Buffer<float> uploadVectors(detail::Call& call, const Strided<Float3>& values, s
     return buffer;
 }
 
+void replaceVectors(Queue& queue, Buffer<float>& buffer, std::span<const Float3> values, std::uint32_t vertices, const char* what) {
+    if (values.size() != vertices || buffer.size() != 3 * values.size())
+        throw Error(ErrorCode::badInput, {std::to_string(values.size()) + " " + what + " for a mesh of " + std::to_string(vertices) +
+                                              " vertices" + (buffer ? "" : std::string(" without ") + what),
+                                          "", std::string("replacing ") + what + " of a mesh on the device",
+                                          std::string("as many ") + what + " as the mesh was made with"});
+    detail::Call call(queue, std::string("replacing ") + std::to_string(values.size()) + " " + what);
+    call.upload(buffer, &values.data()->x, 3 * values.size());
+}
+
 }  // namespace
 
 DeviceMesh::DeviceMesh(Queue& queue, const MeshView& mesh) {
@@ -59,6 +69,34 @@ DeviceMesh::DeviceMesh(Buffer<float> positions, Buffer<std::uint32_t> indices, B
         (normals_ && normals_.size() != 3 * vertices))
         throw Error(ErrorCode::badInput, {"the buffers of a device mesh do not fit each other", "", "",
                                           "three floats a vertex, three indices a triangle, one material a triangle, three floats a normal"});
+}
+
+DeviceMesh DeviceMesh::withOwnVertices(Queue& queue) const {
+    detail::Call call(queue, "copying " + std::to_string(vertexCount()) + " vertices");
+    Workspace& workspace = queue.workspace();
+    const auto copy = [&](const Buffer<float>& from, std::string_view purpose) {
+        if (!from) return Buffer<float>();
+        Buffer<float> to = workspace.take<float>(from.size(), purpose);
+        if (from.size() != 0) detail::copyBytes(queue, from.memory(), to.memory(), from.bytes());
+        return to;
+    };
+    Buffer<float> positions = copy(positions_, "vertex positions"), normals = copy(normals_, "vertex normals");
+    return DeviceMesh(std::move(positions), indices_.shared(), materials_.shared(), std::move(normals), bounds_);
+}
+
+void DeviceMesh::setPositions(Queue& queue, std::span<const Float3> positions, const Bounds& bounds) {
+    replaceVectors(queue, positions_, positions, vertexCount(), "positions");
+    bounds_ = bounds;
+}
+
+void DeviceMesh::setPositions(Queue& queue, std::span<const Float3> positions) {
+    Bounds bounds;
+    for (const Float3& p : positions) bounds.include(p);
+    setPositions(queue, positions, bounds);
+}
+
+void DeviceMesh::setNormals(Queue& queue, std::span<const Float3> normals) {
+    replaceVectors(queue, normals_, normals, vertexCount(), "normals");
 }
 
 std::uint64_t DeviceMesh::bytes() const { return positions_.bytes() + indices_.bytes() + materials_.bytes() + normals_.bytes(); }

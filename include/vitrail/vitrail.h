@@ -8,6 +8,8 @@
 #include <vitrail/core/device.h>
 #include <vitrail/core/error.h>
 #include <vitrail/core/queue.h>
+#include <vitrail/deform/displace.h>
+#include <vitrail/deform/skin.h>
 #include <vitrail/grid/camera.h>
 #include <vitrail/grid/grid.h>
 #include <vitrail/light/boxes.h>

@@ -21,6 +21,7 @@ const std::map<std::string, std::set<std::string>> kMayUse = {
     {"scene", {"layout", "core"}},
     {"grid", {"layout", "core"}},
     {"volume", {"layout", "core", "scene", "grid"}},
+    {"deform", {"layout", "core", "scene", "grid", "volume"}},
     {"voxelize", {"layout", "core", "scene", "grid", "volume", "methods.h"}},
     {"raster", {"layout", "core", "scene", "grid", "volume"}},
     {"light", {"layout", "core", "scene", "grid", "volume", "voxelize", "raster", "methods.h"}},

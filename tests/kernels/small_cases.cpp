@@ -45,6 +45,27 @@ int main() {
             }
         }
 
+        {
+            const Mesh bent = withSmoothNormals(large);
+            Skin rig;
+            rig.positions = bent.positions;
+            rig.normals = bent.normals;
+            rig.vertexJoints.assign(rig.positions.size(), {0, 1, 1, 0});
+            rig.vertexWeights.assign(rig.positions.size(), {0.5f, 0.25f, 0.25f, 0});
+            rig.nodes.resize(2);
+            rig.joints = {0, 1};
+            rig.inverseBind.resize(2);
+            const DeviceMesh rest(queue, rig.bindPose(bent));
+            DeviceMesh moved = rest.withOwnVertices(queue);
+            DeviceSkin onDevice(queue, rig);
+            (void)skin(queue, rest, onDevice, Pose(rig), moved);
+            Buffer<float> amounts = queue.workspace().take<float>(rest.vertexCount(), "amounts");
+            amounts.fill(queue, 0);
+            (void)displace(queue, rest, amounts, 0.0f, moved);
+            (void)displace(queue, rest, Wave{.amplitude = 0.1f, .vector = {1, 2, 3}}, moved);
+            std::printf("deformed: %zu vertices\n", moved.positions().read(queue).size() / 3);
+        }
+
         Scene scene;
         const std::vector<std::string> coarse{"around=8", "rings=4"};
         scene.mesh = withSmoothNormals(makeShape("sphere", coarse));

@@ -36,6 +36,8 @@ public:
     std::size_t bytes() const { return size_ * sizeof(T); }
     explicit operator bool() const { return memory_ != nullptr; }
     detail::Memory& memory() const { return *memory_; }
+    /// The same memory under a second owner; it goes back to its workspace when the last one is gone.
+    Buffer shared() const { return Buffer(memory_, size_); }
 
     /// Copies to the host; waits for what was enqueued before.
     std::vector<T> read(Queue& queue) const {

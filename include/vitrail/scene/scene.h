@@ -8,6 +8,7 @@
 #include <vitrail/scene/image.h>
 #include <vitrail/scene/material.h>
 #include <vitrail/scene/mesh.h>
+#include <vitrail/scene/skin.h>
 
 namespace vitrail {
 inline namespace v0 {
@@ -50,6 +51,7 @@ struct Scene {
     std::optional<Camera> camera;
     DirectionalLight light;
     Environment environment;
+    std::optional<Skin> skin;           ///< of the mesh's vertices, where the file has a skin or animations of nodes; `mesh` is at rest
 };
 
 /// The standard glass of a bare mesh: index of refraction 1.5, lightly tinted.
