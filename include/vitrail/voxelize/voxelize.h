@@ -7,13 +7,15 @@
 
 #include <vitrail/methods.h>
 #include <vitrail/voxelize/conservative.h>
+#include <vitrail/voxelize/per_slice.h>
 #include <vitrail/voxelize/points.h>
 #include <vitrail/voxelize/sampled.h>
+#include <vitrail/voxelize/sliced.h>
 
 namespace vitrail {
 inline namespace v0 {
 
-using Voxelizer = std::variant<Conservative, Sampled, Points>;
+using Voxelizer = std::variant<Conservative, Sampled, Sliced, PerSlice, Points>;
 
 /// The voxelizer called `name` with options "safetyFactor=2"; others keep their defaults.
 /// Throws Error (badOption) that lists what there is.
