@@ -37,6 +37,8 @@ constexpr Family kFamily = Family::VITRAIL_BENCH_FAMILY;  // of this program, se
 constexpr std::uint32_t kResolutions[] = {64, 128, 256, 512, 1024};
 /// Where a method's options are swept; elsewhere they have their defaults.
 constexpr std::uint32_t kSweepResolution = 256;
+/// Baselines take seconds on finer grids and on subdivided meshes, and are left out there.
+constexpr std::uint32_t kBaselineResolution = 256;
 
 struct Input {
     std::string name;
@@ -236,13 +238,15 @@ void add(const std::string& name, std::function<void(benchmark::State&)> run) {
     })->UseManualTime()->Unit(benchmark::kMillisecond);
 }
 
-/// The method's defaults and, where options are swept, each option at powers of two of its default.
+/// The method's defaults and, where options are swept, each option at powers of two of its default (of an eighth of its range where that
+/// is 0).
 std::vector<std::string> optionChoices(const Method& method, std::uint32_t resolution, bool scaling) {
     std::vector<std::string> choices{""};
     if (resolution != kSweepResolution || scaling) return choices;
     for (const MethodOption& option : method.options)
         for (const double factor : {0.5, 2.0, 4.0})
-            if (const double value = option.byDefault * factor; !option.name.empty() && value >= option.least && value <= option.most) {
+            if (const double value = factor * (option.byDefault != 0 ? option.byDefault : option.most / 8);
+                !option.name.empty() && value >= option.least && value <= option.most) {
                 char text[64];
                 std::snprintf(text, sizeof text, "%s=%g", std::string(option.name).c_str(), value);
                 choices.emplace_back(text);
@@ -257,6 +261,7 @@ void addAll(Bench& bench, const std::vector<Input>& meshes) {
             const std::string group = input.name + "/" + std::to_string(resolution) + "/";
             for (const Method& method : methods()) {
                 if (method.family != kFamily) continue;
+                if (method.role == Role::baseline && (resolution > kBaselineResolution || input.name.find('+') != std::string::npos)) continue;
                 for (const std::string& choice : optionChoices(method, resolution, input.scaling)) {
                     const Case one{group + std::string(method.name) + (choice.empty() ? "" : "/" + choice), group, input, resolution};
                     const Voxelizer voxelizer =

@@ -13,7 +13,7 @@
 // never does. All directions of a cell serve its segments too, and a segment lies in its cell, so thin is a subset of
 // conservative to the bit.
 //
-// sampled: the arithmetic at its function is a contract with kernels/voxelize/sampled.cl. This file is compiled without
+// sampled: the arithmetic at its function is a contract with kernels/lib/samples.cl. This file is compiled without
 // contraction.
 #include <vitrail/core/error.h>
 #include <vitrail/reference/truth.h>

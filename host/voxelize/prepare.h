@@ -69,35 +69,44 @@ std::uint64_t estimateVoxelizer(const MeshInput& mesh, const Grid& grid, Channel
 /// Calls launch(first, count) for the triangles in batches, with a step of progress before each.
 void forTriangles(Pass& pass, const char* step, bool second, const std::function<void(std::uint32_t first, std::uint32_t count)>& launch);
 
-/// Launches <method>_mark over the triangles and then over the tasks they left: sets bits where `channels` is null, else adds to them. Its
-/// first argument is the grid, then `options`, then kernels/lib/mark.cl.
-template <class... Options>
-void launchMark(Pass& pass, const char* method, const MarkChannels* channels, const Options&... options) {
+/// Calls run(arguments...) with MARK_BUFFERS of kernels/lib/mark.cl: bits are set where `channels` is null, else fragments added to them.
+template <class Run>
+void withMarkBuffers(Pass& pass, const MarkChannels* channels, Run&& run) {
     const MarkChannels none{};
     const MarkChannels& to = channels != nullptr ? *channels : none;
     const DeviceMesh& mesh = pass.mesh;
+    const Buffer<std::uint32_t> empty;
+    const Buffer<std::int64_t> emptySums;
+    run(mesh.positions(), mesh.indices(), mesh.vertexCount(), mesh.materials(), pass.out.bits, channels != nullptr ? pass.out.rank : empty,
+        to.counts ? *to.counts : empty, to.normalSums ? *to.normalSums : emptySums, to.materials ? *to.materials : empty,
+        to.list ? *to.list : empty, to.cursor ? *to.cursor : empty);
+}
+
+/// "sampled: bits"
+inline std::string markStep(const char* method, const MarkChannels* channels) {
+    return std::string(method) + (channels != nullptr ? ": channels" : ": bits");
+}
+
+/// Launches <method>_mark over the triangles and then over the tasks they left: sets bits where `channels` is null, else adds to them. Its
+/// first argument is the grid, then `options`, then MARK_PARAMETERS of kernels/lib/mark.cl.
+template <class... Options>
+void launchMark(Pass& pass, const char* method, const MarkChannels* channels, const Options&... options) {
     const vitrail_GridDesc desc = pass.out.grid.desc();
-    const std::string kernel = std::string(method) + "_mark", step = std::string(method) + (channels != nullptr ? ": channels" : ": bits");
+    const std::string kernel = std::string(method) + "_mark", step = markStep(method, channels);
     Buffer<std::uint32_t> scratch;
     if (channels != nullptr) {  // what the first pass counted stays
         scratch = pass.call.queue().workspace().take<std::uint32_t>(kStatusWords, "counts");
         pass.call.fill(scratch, 0);
     }
     const Buffer<std::uint32_t>& status = channels != nullptr ? scratch : pass.out.status;
-    const Buffer<std::uint32_t> empty;
-    const Buffer<std::int64_t> emptySums;
-    const auto launch = [&](std::uint32_t first, std::uint32_t groups, const auto& run) {
-        run(kernel.c_str(), desc, options..., mesh.positions(), mesh.indices(), mesh.vertexCount(), mesh.materials(), pass.out.bits,
-            channels != nullptr ? pass.out.rank : empty, to.counts ? *to.counts : empty, to.normalSums ? *to.normalSums : emptySums,
-            to.materials ? *to.materials : empty, to.list ? *to.list : empty, to.cursor ? *to.cursor : empty, pass.tasks, kTaskCapacity, status,
-            first, groups);
-    };
-    forTriangles(pass, step.c_str(), channels != nullptr, [&](std::uint32_t first, std::uint32_t count) {
-        launch(first, 0u, [&](const char* name, const auto&... args) { pass.call.launchRangeOf(kLanes, pass.program, name, count, args...); });
-    });
-    const std::uint32_t groups = pass.call.taskGroups();
-    launch(0u, groups, [&](const char* name, const auto&... args) {
-        pass.call.launch(pass.program, name, groups, 1, args..., static_cast<std::uint64_t>(groups), 1u);
+    withMarkBuffers(pass, channels, [&](const auto&... buffers) {
+        forTriangles(pass, step.c_str(), channels != nullptr, [&](std::uint32_t first, std::uint32_t count) {
+            pass.call.launchRangeOf(kLanes, pass.program, kernel.c_str(), count, desc, options..., buffers..., pass.tasks, kTaskCapacity,
+                                    status, first, 0u);
+        });
+        const std::uint32_t groups = pass.call.taskGroups();
+        pass.call.launch(pass.program, kernel.c_str(), groups, 1, desc, options..., buffers..., pass.tasks, kTaskCapacity, status, 0u,
+                         groups, static_cast<std::uint64_t>(groups), 1u);
     });
 }
 

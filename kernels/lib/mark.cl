@@ -7,10 +7,14 @@
 #include "lib/tasks.cl"
 #pragma OPENCL FP_CONTRACT OFF
 
-#define MARK_PARAMETERS                                                                                                              \
+// What every such kernel reads and writes.
+#define MARK_BUFFERS                                                                                                                 \
     global const float *positions, global const uint *indices, uint vertexCount, global const uint *materials, global uint *bits,    \
         global const uint *rank, global uint *counts, global long *normalSums, global uint *materialIds, global uint *list,          \
-        global uint *cursor, global uint2 *tasks, uint taskCapacity, global uint *status, uint first, uint groups, ulong count, uint perItem
+        global uint *cursor
+
+#define MARK_PARAMETERS \
+    MARK_BUFFERS, global uint2 *tasks, uint taskCapacity, global uint *status, uint first, uint groups, ulong count, uint perItem
 
 // Buffers of the channels asked for; null in a launch that sets bits.
 #define MARK_CHANNELS {bits, rank, counts, normalSums, materialIds, list, cursor}

@@ -1,8 +1,8 @@
 // voxelize/solid.cl: the cells whose centre is inside, by parity (vitrail/voxelize/solid.h): each crossing of a column's line toggles the
 // first cell whose centre lies beyond it, and a sweep over the column makes of toggles what is inside.
-#include "lib/column_sample.cl"
 #include "lib/mark.cl"
 #include "lib/range.cl"
+#include "lib/samples.cl"
 #pragma OPENCL FP_CONTRACT OFF
 
 // beyond: a bit a column, toggled by crossings after the last cell's centre.
@@ -10,36 +10,35 @@ static inline void solid_triangle(const vitrail_GridDesc* grid, global uint* bey
                                   uint vertexCount, uint triangle, int block, global uint* bits, global uint2* tasks, uint taskCapacity,
                                   global uint* status) {
     uint corner[3];
-    const bool counting = block < 0;
-    if (!triangle_corners(positions, indices, vertexCount, triangle, corner)) {
-        if (counting) atomic_inc(status + STATUS_SKIPPED);
-        return;
-    }
     Samples s;
-    int xLeast, xMost, yLeast, yMost;
-    const int found = sample_triangle(grid, positions, corner, true, &s, &xLeast, &xMost, &yLeast, &yMost);
-    if (counting && found == SAMPLE_OUTSIDE)
-        atomic_inc(status + STATUS_OUTSIDE);
-    else if (counting && sample_degenerate(&s))
-        atomic_inc(status + STATUS_DEGENERATE);
-    if (found != SAMPLE_COVERS) return;
+    const int state = samples_load(grid, positions, indices, vertexCount, triangle, true, corner, &s);
+    if (block < 0) samples_count(&s, state, status);
+    if (state != SAMPLES_COVERS) return;
+    int xLeast = s.xLeast, xMost = s.xMost, yLeast = s.yLeast, yMost = s.yMost;
     if (tasks_columns(&xLeast, &xMost, &yLeast, &yMost, block, tasks, taskCapacity, status, triangle)) return;
     const real last = REAL(grid->size.z) - REAL(0.5f);
-    SAMPLE_EACH(grid, &s, xLeast, xMost, yLeast, yMost, x, y, z, {
-        if (z < last) {
-            const uint cell = z < REAL(0.5f) ? 0u : (uint)(z + REAL(0.5f));
-            atomic_xor(bits + bits_word(grid, (uint)x, (uint)y, cell), 1u << (cell & 31u));
-        } else {
-            const size_t column = (size_t)y * grid->tilesX * 8u + (uint)x;
-            atomic_xor(beyond + column / 32u, 1u << (column & 31u));
+    for (int y = yLeast; y <= yMost; ++y) {
+        Seen q;
+        int from, to;
+        if (!samples_row(grid, &s, xLeast, xMost, y, &q, &from, &to)) continue;
+        for (int x = from; x < to; ++x) {
+            real z;
+            if (!samples_depth(grid, &s, &q, x, &z)) continue;
+            if (z < last) {
+                const uint cell = z < REAL(0.5f) ? 0u : (uint)(z + REAL(0.5f));
+                atomic_xor(bits + bits_word(grid, (uint)x, (uint)y, cell), 1u << (cell & 31u));
+            } else {
+                const size_t column = (size_t)y * grid->tilesX * 8u + (uint)x;
+                atomic_xor(beyond + column / 32u, 1u << (column & 31u));
+            }
         }
-    })
+    }
 }
 
 kernel void solid_mark(const vitrail_GridDesc grid, global uint* beyond, MARK_PARAMETERS) {
     MARK_WITHOUT_CHANNELS;
     MARK_EIGHTS(triangles, blocks, live, {
-        live &= sample_eight(&grid, positions, indices, vertexCount, triangles, true);
+        live &= samples_eight(&grid, positions, indices, vertexCount, triangles, true);
         for (int lane = 0; lane < LANES; ++lane)
             if (lanes_int_at(&live, lane))
                 solid_triangle(&grid, beyond, positions, indices, vertexCount, triangles[lane], blocks[lane], bits, tasks, taskCapacity, status);

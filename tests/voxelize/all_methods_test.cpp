@@ -25,13 +25,16 @@ class EveryVoxelizer : public ::testing::TestWithParam<const char*> {
 protected:
     Voxelizer method(Channel channels = Channel::none) const { return voxelizerByName(GetParam(), {}, channels); }
 };
-INSTANTIATE_TEST_SUITE_P(Methods, EveryVoxelizer, ::testing::Values("conservative", "thin", "sampled", "points"),
+INSTANTIATE_TEST_SUITE_P(Methods, EveryVoxelizer,
+                         ::testing::Values("conservative", "thin", "sampled", "sliced", "per_slice", "points"),
                          [](const auto& info) { return std::string(info.param); });
 
 TEST(Methods, AllAreTested) {
     for (const Method& row : methods())
         if (row.family == Family::surfaceVoxels) {
-            EXPECT_TRUE(row.name == "conservative" || row.name == "thin" || row.name == "sampled" || row.name == "points") << row.name;
+            EXPECT_TRUE(row.name == "conservative" || row.name == "thin" || row.name == "sampled" || row.name == "sliced" ||
+                        row.name == "per_slice" || row.name == "points")
+                << row.name;
         }
 }
 
@@ -52,9 +55,9 @@ Fragments fragmentsOf(const Mesh& mesh, const Grid& grid, std::string_view metho
             continue;
         }
         const Mesh one = test::triangles({p[0], p[1], p[2]});
-        const VoxelBits bits = method == "sampled" ? reference::sampled(one, grid)
-                               : method == "thin" ? voxelize(queue(), one, grid, Thin{}).host()
-                                                  : reference::conservative(one, grid).possible;
+        const VoxelBits bits = method == "conservative" ? reference::conservative(one, grid).possible
+                               : method == "thin"        ? voxelize(queue(), one, grid, Thin{}).host()
+                                                         : reference::sampled(one, grid);
         for (unsigned z = 0; z < size.z; ++z)
             for (unsigned y = 0; y < size.y; ++y)
                 for (unsigned x = 0; x < size.x; ++x)
@@ -258,6 +261,12 @@ TEST(Methods, OptionsAreCheckedNeverClamped) {
     for (const float gamma : {0.2f, 16.5f, -1.0f, std::numeric_limits<float>::quiet_NaN()}) try {
             (void)voxelize(queue(), mesh, Grid::fit(mesh.bounds(), 8), Points{.safetyFactor = gamma});
             ADD_FAILURE() << "no error for " << gamma;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::badOption);
+        }
+    for (const float extension : {-0.1f, 100.5f, std::numeric_limits<float>::quiet_NaN()}) try {
+            (void)voxelize(queue(), mesh, Grid::fit(mesh.bounds(), 8), Sliced{.extension = extension});
+            ADD_FAILURE() << "no error for " << extension;
         } catch (const Error& error) {
             EXPECT_EQ(error.code(), ErrorCode::badOption);
         }

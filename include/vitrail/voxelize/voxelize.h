@@ -7,15 +7,17 @@
 
 #include <vitrail/methods.h>
 #include <vitrail/voxelize/conservative.h>
+#include <vitrail/voxelize/per_slice.h>
 #include <vitrail/voxelize/points.h>
 #include <vitrail/voxelize/sampled.h>
+#include <vitrail/voxelize/sliced.h>
 #include <vitrail/voxelize/solid.h>
 #include <vitrail/voxelize/thin.h>
 
 namespace vitrail {
 inline namespace v0 {
 
-using Voxelizer = std::variant<Conservative, Thin, Sampled, Points, Solid>;
+using Voxelizer = std::variant<Conservative, Thin, Sampled, Sliced, PerSlice, Points, Solid>;
 
 /// The voxelizer called `name` with options "safetyFactor=2"; others keep their defaults.
 /// Throws Error (badOption) that lists what there is.
