@@ -41,7 +41,7 @@ TEST(MethodTable, RowsHaveTheirFiles) {
         if (isVoxelizer(row)) {
             EXPECT_TRUE(holds("include/vitrail/voxelize", stem + ".h")) << stem;
             EXPECT_TRUE(holds("host/voxelize", stem + ".cpp")) << stem;
-            EXPECT_TRUE(holds("kernels/voxelize", stem + ".cl")) << stem;
+            EXPECT_TRUE(holds(row.role == Role::baseline ? "kernels/baselines" : "kernels/voxelize", stem + ".cl")) << stem;
             EXPECT_TRUE(holds("tests/voxelize", stem + "_test.cpp")) << stem;
         }
     }

@@ -15,7 +15,8 @@ using test::queue;
 constexpr Channel kAll = Channel::count | Channel::normal | Channel::material;
 
 void expectScan(const Mesh& mesh, const Grid& grid, const std::string& name) {
-    EXPECT_EQ(voxelize(queue(), mesh, grid, PerSlice{}).host().words, reference::sampled(mesh, grid).words) << name << " on " << grid.text();
+    const VoxelBits scan = reference::sampled(mesh, grid);
+    EXPECT_EQ(voxelize(queue(), mesh, grid, PerSlice{}).host().words, scan.words) << name << " on " << grid.text();
 }
 
 TEST(PerSlice, EqualsTheScanOnShapes) {

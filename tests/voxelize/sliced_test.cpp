@@ -93,7 +93,8 @@ TEST(Sliced, EqualsSampledOnSliversAndNearlyLevelTriangles) {
         }
 }
 
-/// Slices cut into `parts`: what lies within `more` parts of a slice, by the scan. Powers of two leave every operation of the scan as it is.
+/// Slices cut into `parts`: what lies within `more` parts of a slice, by the scan. Powers of two leave every operation of the scan as it
+/// is.
 VoxelBits extended(const VoxelBits& fine, const Grid& grid, unsigned parts, unsigned more) {
     VoxelBits bits(grid);
     const Uint3 size = grid.size();
@@ -194,7 +195,8 @@ TEST(Sliced, WorksInBatches) {
     const Uint3 size(90, 80, 70);
     const Grid grid = Grid::box(Float3(0), 1.0f, size);
     const Mesh mesh = test::soup(12, 600000, size, 1.5f);
-    const Voxels sampled = voxelize(queue(), mesh, grid, Sampled{.channels = kAll}), sliced = voxelize(queue(), mesh, grid, Sliced{.channels = kAll});
+    const Voxels sampled = voxelize(queue(), mesh, grid, Sampled{.channels = kAll}),
+                 sliced = voxelize(queue(), mesh, grid, Sliced{.channels = kAll});
     EXPECT_EQ(differing(sliced.host(), sampled.host()), 0u);
     ASSERT_EQ(sliced.occupied(), sampled.occupied());
     EXPECT_EQ(sliced.counts(), sampled.counts());

@@ -1,4 +1,5 @@
-// voxelize/per_slice.cl: one pass over all triangles for one slice (vitrail/voxelize/per_slice.h).
+// baselines/per_slice.cl: one pass over all triangles for one slice (vitrail/voxelize/per_slice.h). In a program of its own: nobody who
+// does not ask for it waits for its compilation.
 #include "lib/mark.cl"
 #include "lib/range.cl"
 #include "lib/samples.cl"
