@@ -122,20 +122,22 @@ public:
     /// come in random order, and the truth takes longer than they do.
     const benchmark::UserCounters& errors(const std::string& group, const std::string& name, const Loaded& loaded, const Grid& grid) {
         if (const auto found = errors_.find(name); found != errors_.end()) return found->second;
-        const reference::Truth thin = reference::thin(loaded.mesh, grid);
         const bool solid = kFamily == Family::solidVoxels;
+        const reference::Truth thin = solid ? reference::Truth{VoxelBits(grid), VoxelBits(grid)} : reference::thin(loaded.mesh, grid);
         const VoxelBits inside = solid ? reference::solid(loaded.mesh, grid) : VoxelBits(grid);
         const reference::Truth touched = solid ? reference::Truth{inside, inside} : reference::conservative(loaded.mesh, grid);
         for (const auto& [member, bits] : groups_.at(group)) {
             const VoxelBits result = bits(*this, loaded, grid);
             const VoxelDifference difference = compareVoxels(result, touched.certain, touched.possible);
-            const Watertight tight = checkWatertight(result, thin.certain);
             benchmark::UserCounters& counters = errors_[member];
             counters["missing"] = difference.missingShare();
             counters["extra"] = difference.extraShare();
-            counters["missingThin"] = compareVoxels(result, thin.certain, thin.possible).missingShare();
-            counters["leaks"] = static_cast<double>(tight.leaks);
-            counters["watertight"] = tight.holds();
+            if (!solid) {
+                const Watertight tight = checkWatertight(result, thin.certain);
+                counters["missingThin"] = compareVoxels(result, thin.certain, thin.possible).missingShare();
+                counters["leaks"] = static_cast<double>(tight.leaks);
+                counters["watertight"] = tight.holds();
+            }
             counters["occupied"] = static_cast<double>(difference.result);
             counters["touchedWords"] = static_cast<double>(result.words.size()) - double(std::ranges::count(result.words, 0u));
         }
