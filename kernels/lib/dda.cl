@@ -34,9 +34,10 @@ static inline bool dda_start(Dda* dda, const vitrail_GridDesc* grid, float3 orig
     const float enter = fmax(t, fmax(low.x, fmax(low.y, low.z))), leave = fmin(high.x, fmin(high.y, high.z));
     if (!(enter < leave)) return false;
     const float3 p = origin + dda->direction * enter;
-    dda->x = clamp((int)floor(p.x), 0, (int)grid->size.x - 1);
-    dda->y = clamp((int)floor(p.y), 0, (int)grid->size.y - 1);
-    dda->z = clamp((int)floor(p.z), 0, (int)grid->size.z - 1);
+    // Toward zero is down, once below 0 counts as 0.
+    dda->x = clamp((int)p.x, 0, (int)grid->size.x - 1);
+    dda->y = clamp((int)p.y, 0, (int)grid->size.y - 1);
+    dda->z = clamp((int)p.z, 0, (int)grid->size.z - 1);
     dda->enter = enter;
     dda_set_leave(dda);
     return true;
@@ -72,7 +73,7 @@ static inline bool dda_skip_brick(Dda* dda, const vitrail_GridDesc* grid) {
     const float t = fmax(dda->enter, fmin(tx, fmin(ty, tz)));
     const float3 p = dda->origin + dda->direction * t;
     // Along the axis it leaves by, the next cell is known; along the others it stays within the brick.
-    int x = clamp((int)floor(p.x), bx, bx + 7), y = clamp((int)floor(p.y), by, by + 7), z = clamp((int)floor(p.z), bz, bz + 7);
+    int x = clamp((int)p.x, bx, bx + 7), y = clamp((int)p.y, by, by + 7), z = clamp((int)p.z, bz, bz + 7);
     if (tx <= ty && tx <= tz)
         x = dda->inverse.x > 0.0f ? bx + 8 : bx - 1;
     else if (ty <= tz)

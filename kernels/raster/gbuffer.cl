@@ -30,8 +30,8 @@ static inline Vector gbuffer_vertex(const vitrail_CameraDesc* camera, global con
 // Pixels whose centres' window coordinates may lie between low and high, along an axis of `count` pixels over [-half, half].
 static inline void gbuffer_span(real low, real high, float half_, uint count, int* first, int* last) {
     const real scale = REAL(count) / (REAL(2) * REAL(half_));
-    *first = (int)fmax(floor((low + REAL(half_)) * scale - REAL(1)), REAL(0));
-    *last = (int)fmin(ceil((high + REAL(half_)) * scale), REAL(count - 1u));
+    *first = (int)real_max((low + REAL(half_)) * scale - REAL(1), REAL(0));
+    *last = real_ceil_int(real_max(real_min((high + REAL(half_)) * scale, REAL(count - 1u)), REAL(-1)));
 }
 
 static inline void gbuffer_triangle(const vitrail_CameraDesc* camera, global const float* positions, global const uint* indices,
