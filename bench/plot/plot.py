@@ -173,7 +173,9 @@ def main():
         # With panels missing from the last row, the ones above them keep their own ticks.
         if index + columns >= len(meshes):
             axes.tick_params(labelbottom=True)
-    figure.supxlabel(f"\N{LEFTWARDS ARROW} better    {ERROR_TEXT[options.error]}", x=inner / 2, fontsize=9.5)
+    family = "Solid" if all(method.startswith("solid") for method in methods) else "Surface"
+    text = ERROR_TEXT[options.error].replace("touched cells", "touched cells" if family == "Surface" else "cells inside")
+    figure.supxlabel(f"\N{LEFTWARDS ARROW} better    {text}", x=inner / 2, fontsize=9.5)
     figure.supylabel("\N{LEFTWARDS ARROW} better    kernel time, ms", y=upper / 2, fontsize=9.5)
 
     entries = []
@@ -191,7 +193,7 @@ def main():
                                   label=f"resolution {resolution}"))
     figure.legend(handles=entries, loc="upper left", bbox_to_anchor=(inner, upper), fontsize=8.5, frameon=False, labelspacing=0.6)
     resolution = "" if several else f"longest axis {points[0].resolution} voxels; "
-    figure.text(0.12 / width, 1 - 0.1 / height, "Surface voxelization: error against time", va="top", fontsize=11.5, weight="bold")
+    figure.text(0.12 / width, 1 - 0.1 / height, f"{family} voxelization: error against time", va="top", fontsize=11.5, weight="bold")
     figure.text(0.12 / width, 1 - 0.36 / height, resolution + records.machine_text(machine), va="top", fontsize=8, color="#555555")
     figure.savefig(options.output, dpi=150, metadata={"Date": None} if options.output.endswith(".svg") else None)
 
