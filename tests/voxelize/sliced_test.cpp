@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "tests/support/bits.h"
 #include "tests/support/cases.h"
 #include "tests/support/closed.h"
 #include "tests/support/device.h"
@@ -15,16 +16,10 @@
 namespace vitrail {
 namespace {
 
+using test::differing;
 using test::queue;
 
 constexpr Channel kAll = Channel::count | Channel::normal | Channel::material;
-
-std::uint64_t differing(const VoxelBits& a, const VoxelBits& b) {
-    std::uint64_t bits = 0;
-    for (std::size_t w = 0; w < a.words.size(); ++w)
-        bits += static_cast<std::uint64_t>(__builtin_popcount(a.words[w] ^ b.words[w]));
-    return bits;
-}
 
 /// Voxels of `a` that `b` lacks.
 std::uint64_t beyond(const VoxelBits& a, const VoxelBits& b) {

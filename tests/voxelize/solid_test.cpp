@@ -13,6 +13,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/support/bits.h"
 #include "tests/support/cases.h"
 #include "tests/support/closed.h"
 #include "tests/support/data.h"
@@ -22,14 +23,8 @@
 namespace vitrail {
 namespace {
 
+using test::differing;
 using test::queue;
-
-std::uint64_t differing(const VoxelBits& a, const VoxelBits& b) {
-    std::uint64_t bits = 0;
-    for (std::size_t w = 0; w < a.words.size(); ++w)
-        bits += static_cast<std::uint64_t>(__builtin_popcount(a.words[w] ^ b.words[w]));
-    return bits;
-}
 
 void expectScan(const Mesh& mesh, const Grid& grid, const std::string& name) {
     const VoxelBits scan = reference::solid(mesh, grid);
