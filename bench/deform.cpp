@@ -22,7 +22,7 @@
 #include <vitrail/scene/shapes.h>
 #include <vitrail/voxelize/conservative.h>
 
-#include "cli/record.h"
+#include "context.h"
 
 namespace {
 
@@ -193,9 +193,7 @@ int main(int argc, char** argv) {
                     }
                 })->UseManualTime()->Unit(benchmark::kMillisecond);
             }
-        const cli::Json machine = cli::machineRecord(device.info());
-        for (const auto& [key, value] : machine.items())
-            benchmark::AddCustomContext(key, value.is_string() ? value.get<std::string>() : value.dump());
+        addMachineContext(device.info());
         benchmark::RunSpecifiedBenchmarks();
         benchmark::Shutdown();
     } catch (const std::exception& error) {

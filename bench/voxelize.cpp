@@ -25,7 +25,7 @@
 #include <vitrail/scene/shapes.h>
 #include <vitrail/voxelize/voxelize.h>
 
-#include "cli/record.h"
+#include "context.h"
 #include "native/edge_runs.h"
 #include "native/separating_axis.h"
 
@@ -305,9 +305,7 @@ int main(int argc, char** argv) {
         Bench bench(timesOnly);
         const std::vector<Input> meshes = inputs();
         addAll(bench, meshes);
-        const cli::Json machine = cli::machineRecord(bench.deviceInfo());
-        for (const auto& [key, value] : machine.items())
-            benchmark::AddCustomContext(key, value.is_string() ? value.get<std::string>() : value.dump());
+        addMachineContext(bench.deviceInfo());
         benchmark::AddCustomContext("copyGBs", std::to_string(bench.copyBandwidth * 1e-9));
         benchmark::RunSpecifiedBenchmarks();
         benchmark::Shutdown();

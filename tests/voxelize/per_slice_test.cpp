@@ -4,6 +4,7 @@
 #include <vitrail/voxelize/per_slice.h>
 #include <vitrail/voxelize/sampled.h>
 
+#include "tests/support/bits.h"
 #include "tests/support/cases.h"
 #include "tests/support/device.h"
 
@@ -37,11 +38,7 @@ TEST(PerSlice, HasTheFragmentsOfSampled) {
     const Mesh mesh = test::soup(13, 500, size, 20);
     const Voxels sampled = voxelize(queue(), mesh, grid, Sampled{.channels = kAll}),
                  perSlice = voxelize(queue(), mesh, grid, PerSlice{.channels = kAll});
-    ASSERT_EQ(perSlice.occupied(), sampled.occupied());
-    EXPECT_EQ(perSlice.counts(), sampled.counts());
-    EXPECT_EQ(perSlice.materials(), sampled.materials());
-    EXPECT_EQ(perSlice.normalBuffer().read(queue()), sampled.normalBuffer().read(queue()));
-    EXPECT_EQ(perSlice.report().outsideTriangles, sampled.report().outsideTriangles);
+    test::expectSameChannels(queue(), perSlice, sampled);
 }
 
 }  // namespace

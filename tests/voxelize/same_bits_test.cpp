@@ -36,7 +36,8 @@ std::string outputOf(const std::string& command) {
     return all;
 }
 
-// Threads are set for a process: a program of its own prints what one makes.
+// Threads are set for a process: a program of its own prints what one makes. Skipped where there is nothing to compare: a GPU, one core, or
+// a driver that does not let itself be told.
 TEST(SameBits, WithOneThreadAndWithMore) {
     const unsigned units = test::device().info().computeUnits;
     if (units < 2 || !test::device().info().cpu) GTEST_SKIP() << "the device has one compute unit, or is no CPU";
