@@ -128,6 +128,7 @@ Json record(const VoxelReport& report) {
             {"openColumns", report.openColumns},
             {"grid", vectorRecord(report.grid)},
             {"occupied", report.occupied},
+            {"bricks", report.bricks},
             {"kernelMs", report.kernelMs},
             {"wallMs", report.wallMs},
             {"uploadMs", report.uploadMs},

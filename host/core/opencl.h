@@ -81,6 +81,7 @@ struct QueueState {
     std::vector<std::shared_ptr<Record>> records;  // of the calls under way, innermost last
     std::function<bool(const Progress&)> progress;
     Precision precision = Precision::best;
+    Storage storage = Storage::automatic;
 };
 
 /// Runs an OpenCL call and turns cl::Error into Error (deviceFailed) with the call's name and its code's name.

@@ -275,6 +275,8 @@ Workspace& Queue::workspace() { return workspace_; }
 DeviceInfo Queue::deviceInfo() const { return state_->device->info; }
 std::uint64_t Queue::memoryLimit() const { return state_->device->memoryLimit; }
 Counters Queue::counters() const { return Device(state_->device).counters(); }
+void Queue::setStorage(Storage storage) { state_->storage = storage; }
+Storage Queue::storage() const { return state_->storage; }
 void Queue::setPrecision(Precision precision) { state_->precision = precision; }
 Precision Queue::precision() const { return state_->device->info.fp64 ? state_->precision : Precision::single; }
 void Queue::setProgress(std::function<bool(const Progress&)> progress) { state_->progress = std::move(progress); }

@@ -22,7 +22,7 @@ Image shade(Queue& queue, const Voxels& voxels, const Camera& camera, const Boxe
     detail::Call call(queue, "showing voxels of a grid of " + grid.text());
     Workspace& workspace = queue.workspace();
     const std::uint64_t samples = static_cast<std::uint64_t>(sampled.width) * sampled.height;
-    Buffer<std::uint32_t> united, others;
+    Buffer<std::uint32_t> united, others, these;
     Buffer<std::uint8_t> mip;
     if (difference) {
         std::vector<std::uint32_t> all = effect.other->words;
@@ -32,6 +32,10 @@ Image shade(Queue& queue, const Voxels& voxels, const Camera& camera, const Boxe
         united = workspace.take<std::uint32_t>(all.size(), "both voxels");
         call.upload(others, effect.other->words.data(), all.size());
         call.upload(united, all.data(), all.size());
+        if (voxels.bricks()) {
+            these = workspace.take<std::uint32_t>(own.size(), "these voxels");
+            call.upload(these, own.data(), own.size());
+        }
         const std::uint64_t tiles = all.size() / VITRAIL_WORDS_PER_TILE;
         mip = workspace.take<std::uint8_t>(tiles, "occupancy mip");
         call.launchRange(detail::Program{"volume", ""}, "voxels_mip", tiles, united, mip);
@@ -44,7 +48,8 @@ Image shade(Queue& queue, const Voxels& voxels, const Camera& camera, const Boxe
     const auto bound = static_cast<std::int32_t>(4 * (size.x + size.y + size.z));
     Buffer<float> seen = workspace.take<float>(4 * samples, "samples of a picture");
     call.launchRange(detail::Program{"light", ""}, "boxes_shade", samples, grid.desc(), desc, static_cast<std::uint32_t>(effect.colour),
-                     difference ? united : voxels.bits(), difference ? mip : voxels.mip(), voxels.bits(), others, voxels.rank(), channel, bound, seen);
+                     difference ? united : voxels.bits(), difference ? mip : voxels.mip(), these ? these : voxels.bits(),
+                     difference ? none : voxels.bricks(), others, voxels.rank(), channel, bound, seen);
     auto image = detail::resolveSamples(call, seen, camera.width, camera.height, effect.samples);
     image->counted.effect = "voxels";
     image->counted.method = voxels.report().method;

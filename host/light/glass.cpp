@@ -110,7 +110,7 @@ Image shadeVoxels(Queue& queue, const Scene& scene, const Camera& camera, const 
         const std::uint64_t count = std::min(kBand, samples - first);
         const auto launch = [&](const auto&... tail) {
             call.launchRange(program, kernel, count, grid.desc(), gbuffer.camera, light, mesh.positions(), mesh.indices(), mesh.normals(),
-                             mesh.materials(), gbuffer.triangle, voxels.voxels.bits(), voxels.voxels.rank(), voxels.voxels.mip(), voxels.surface,
+                             mesh.materials(), gbuffer.triangle, voxels.voxels.bits(), voxels.voxels.bricks(), voxels.voxels.rank(), voxels.voxels.mip(), voxels.surface,
                              voxels.voxels.materialBuffer(), materials, tail...);
         };
         if constexpr (std::is_same_v<Effect, Glass>)

@@ -1,5 +1,6 @@
 #include <vitrail/volume/voxels.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/call.h"
@@ -21,6 +22,18 @@ const Buffer<std::uint32_t>& channelOf(const VoxelsState& state, Channel channel
     return buffer;
 }
 }  // namespace
+
+void makeBricks(Call& call, VoxelsState& state) {
+    Workspace& workspace = state.queue.workspace();
+    const std::uint64_t groups = state.bricks.size() / 2;
+    Buffer<std::uint32_t> before = workspace.take<std::uint32_t>(groups, "scan of bricks");
+    call.launchRange(kVolume, "voxels_brick_counts", groups, state.bricks, before);
+    const std::uint64_t count = exclusiveScan(call, before) + 1;
+    state.brickTiles = workspace.take<std::uint32_t>(count, "tiles of bricks");
+    call.launchRange(kVolume, "voxels_brick_tiles", groups, state.bricks, before, state.brickTiles);
+    state.bits = workspace.take<std::uint32_t>(count * VITRAIL_WORDS_PER_TILE, std::to_string(count) + " bricks of a grid of " + state.grid.text());
+    call.fill(state.bits, 0);
+}
 
 void makeRank(VoxelsState& state) {
     if (state.rank) return;
@@ -77,6 +90,8 @@ Voxels::~Voxels() = default;
 const Grid& Voxels::grid() const { return state_->grid; }
 Channel Voxels::channels() const { return state_->channels; }
 const Buffer<std::uint32_t>& Voxels::bits() const { return state_->bits; }
+const Buffer<std::uint32_t>& Voxels::bricks() const { return state_->bricks; }
+const Buffer<std::uint32_t>& Voxels::brickTiles() const { return state_->brickTiles; }
 
 const Buffer<std::uint32_t>& Voxels::rank() const {
     detail::makeRank(*state_);
@@ -107,11 +122,33 @@ std::uint64_t Voxels::occupied() const {
 
 const VoxelBits& Voxels::host() const {
     if (!state_->host) {
+        const std::uint64_t bytes = state_->grid.wordCount() * sizeof(std::uint32_t), limit = state_->queue.memoryLimit();
+        if (state_->bricks && bytes > limit)
+            throw Error(ErrorCode::outOfMemory, {"all words of a grid of " + state_->grid.text() + " on the host are " + detail::bytesText(bytes) +
+                                                     "; the memory limit is " + detail::bytesText(limit), "", "", "Voxels::forEach"});
         auto host = std::make_unique<VoxelBits>(state_->grid);
-        detail::readBytes(state_->queue, state_->bits.memory(), 0, host->words.data(), host->words.size() * sizeof(std::uint32_t));
+        if (state_->bricks) {
+            const std::vector<std::uint32_t>&words = hostWords(), &tiles = hostTiles();
+            for (std::uint64_t brick = 1; brick < tiles.size(); ++brick)
+                std::copy_n(words.begin() + static_cast<std::ptrdiff_t>(brick * VITRAIL_WORDS_PER_TILE), VITRAIL_WORDS_PER_TILE,
+                            host->words.begin() + static_cast<std::ptrdiff_t>(std::uint64_t(tiles[brick]) * VITRAIL_WORDS_PER_TILE));
+        } else {
+            detail::readBytes(state_->queue, state_->bits.memory(), 0, host->words.data(), bytes);
+        }
         state_->host = std::move(host);
     }
     return *state_->host;
+}
+
+const std::vector<std::uint32_t>& Voxels::hostWords() const {
+    if (!state_->bricks) return host().words;
+    if (state_->hostBricks.empty()) state_->hostBricks = state_->bits.read(state_->queue);
+    return state_->hostBricks;
+}
+
+const std::vector<std::uint32_t>& Voxels::hostTiles() const {
+    if (state_->bricks && state_->hostTiles.empty()) state_->hostTiles = state_->brickTiles.read(state_->queue);
+    return state_->hostTiles;
 }
 
 const std::vector<std::uint32_t>& Voxels::counts() const {
@@ -139,6 +176,7 @@ const VoxelReport& Voxels::report() const {
         report.triangles = state_->triangles;
         report.grid = state_->grid.size();
         report.occupied = occupied();
+        if (state_->bricks) report.bricks = state_->brickTiles.size() - 1;
         if (state_->status) {
             const std::vector<std::uint32_t> status = state_->status.read(state_->queue);
             report.degenerateTriangles = status[detail::kStatusDegenerate];

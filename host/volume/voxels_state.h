@@ -21,6 +21,7 @@ struct VoxelsState {
     Grid grid;
     Channel channels = Channel::none;
     Buffer<std::uint32_t> bits;
+    Buffer<std::uint32_t> bricks, brickTiles;          // empty: dense
     Buffer<std::uint32_t> counts, normals, materials;  // one entry an occupied voxel; empty unless asked for
     Buffer<std::uint32_t> status;                      // kStatusWords; empty: nothing was counted
     std::shared_ptr<Record> record;
@@ -33,11 +34,15 @@ struct VoxelsState {
     std::optional<std::uint64_t> occupied;
     std::unique_ptr<VoxelBits> host;
     std::optional<VoxelReport> report;
+    std::vector<std::uint32_t> hostBricks, hostTiles;  // of bricks; dense words are in `host`
     std::vector<std::uint32_t> hostCounts, hostMaterials;
     std::vector<Float3> hostNormals;
 
     VoxelsState(std::shared_ptr<QueueState> queueState, const Grid& g) : queue(std::move(queueState)), grid(g) {}
 };
+
+/// Numbers the bricks that `bricks` has bits for, takes their words and clears them; waits for their number.
+void makeBricks(Call& call, VoxelsState& state);
 
 /// Fills `rank` and `occupied`; waits for the total. Throws Error (unsupported) past 2^32 - 1 occupied voxels.
 void makeRank(VoxelsState& state);

@@ -42,18 +42,72 @@ std::uint64_t meshBytes(const MeshView& mesh, bool materials) {
     return mesh.positions.count * 12 + mesh.triangleCount() * (materials ? 16 : 12);
 }
 
+/// Bits that take more lie in bricks; below, the second pass over the triangles costs more than the clear of empty tiles.
+constexpr std::uint64_t kDenseMost = 256ull << 20;
+
+std::uint64_t groupsOfTiles(const Grid& grid) {
+    return (grid.wordCount() / VITRAIL_WORDS_PER_TILE + VITRAIL_TILES_PER_GROUP - 1) / VITRAIL_TILES_PER_GROUP;
+}
+
+/// Bytes of upload, task list and bits, dense or in bricks, and with channels of rank and channels. Bricks and channels are what a compact
+/// body needs.
+std::uint64_t bytesOf(const MeshInput& mesh, const Grid& grid, Channel channels, bool bricks) {
+    const Uint3 s = grid.size();
+    const std::uint64_t face = std::max({std::uint64_t(s.x) * s.y, std::uint64_t(s.y) * s.z, std::uint64_t(s.x) * s.z});
+    std::uint64_t bytes = kStatusWords * 4 + kTaskCapacity * sizeof(Task), words = grid.wordCount();
+    if (bricks) {
+        // Its surface is twice a face, which lies in tiles of 8 x 8 cells at the best and of 8 x 32 at the worst.
+        words = std::min(words, 4 * face / 64 * VITRAIL_WORDS_PER_TILE);
+        bytes += groupsOfTiles(grid) * 12 + words / VITRAIL_WORDS_PER_TILE * 4;
+    }
+    bytes += words * 4;
+    if (mesh.device() == nullptr) bytes += meshBytes(mesh.view(), has(channels, Channel::material) && !mesh.view().materials.empty());
+    // A surface occupies about twice a face of the grid for a compact body; eight faces leave room for most scenes.
+    if (channels != Channel::none) bytes += words / VITRAIL_WORDS_PER_RANK * 4 + channelBytes(channels, std::min(grid.voxelCount(), 8 * face));
+    return bytes;
+}
+
+/// From the memory that all tiles would take.
+bool inBricks(const Queue& queue, const MeshInput& mesh, const Grid& grid) {
+    const std::uint64_t dense = grid.wordCount() * 4;
+    if (queue.storage() != Storage::automatic) return queue.storage() == Storage::bricks;
+    return dense > kDenseMost || dense > queue.deviceInfo().maxBufferBytes || bytesOf(mesh, grid, Channel::none, false) > queue.memoryLimit();
+}
+
+/// Throws Error (outOfMemory) where the call cannot go on, before anything is taken. Of bricks only the directory is known by then.
+void refuse(const Queue& queue, const MeshInput& mesh, const Grid& grid, const char* name, bool bricks) {
+    const DeviceInfo device = queue.deviceInfo();
+    const std::uint64_t limit = queue.memoryLimit(), most = device.maxBufferBytes, dense = grid.wordCount() * 4;
+    const std::uint64_t buffer = bricks ? groupsOfTiles(grid) * 8 : dense;
+    const std::uint64_t need = bytesOf(mesh, grid, Channel::none, false) - dense + (bricks ? groupsOfTiles(grid) * 12 : dense);
+    constexpr std::uint64_t kTilesMost = 0x7fffffff;  // kernels count them in 31 bits
+    const std::uint64_t tiles = dense / (4 * VITRAIL_WORDS_PER_TILE);
+    std::string what;
+    double room = 1;
+    if (need > limit) {
+        what = bytesText(need) + (bricks ? " and memory for bricks" : "") + "; the memory limit is " + bytesText(limit);
+        room = double(limit) / double(need);
+    } else if (buffer > most) {
+        what = bytesText(buffer) + (bricks ? " for a directory of bricks" : " of bits") + "; this device allows " + bytesText(most) + " in one buffer";
+        room = double(most) / double(buffer);
+    } else if (bricks && tiles > kTilesMost) {
+        what = std::to_string(tiles) + " tiles; bricks go to " + std::to_string(kTilesMost);
+        room = double(kTilesMost) / double(tiles);
+    } else {
+        return;
+    }
+    const Uint3 size = grid.size();
+    throw Error(ErrorCode::outOfMemory,
+                {std::string(name) + ": a grid of " + grid.text() + " needs " + what, "device: " + device.name + " (" + device.platform + ")",
+                 "voxelizing " + std::to_string(mesh.triangleCount()) + " triangles",
+                 std::to_string(static_cast<std::uint64_t>(std::max({size.x, size.y, size.z}) * std::cbrt(room) * 0.98)) +
+                     " voxels along the longest axis or fewer"});
+}
+
 }  // namespace
 
 std::uint64_t estimateVoxelizer(const MeshInput& mesh, const Grid& grid, Channel channels) {
-    std::uint64_t bytes = grid.wordCount() * 4 + kStatusWords * 4 + kTaskCapacity * sizeof(Task);
-    if (mesh.device() == nullptr) bytes += meshBytes(mesh.view(), has(channels, Channel::material) && !mesh.view().materials.empty());
-    if (channels != Channel::none) {
-        // A surface occupies about twice a face of the grid for a compact body; four faces leave room for most scenes.
-        const Uint3 s = grid.size();
-        const std::uint64_t face = std::max({std::uint64_t(s.x) * s.y, std::uint64_t(s.y) * s.z, std::uint64_t(s.x) * s.z});
-        bytes += grid.wordCount() / VITRAIL_WORDS_PER_RANK * 4 + channelBytes(channels, std::min(grid.voxelCount(), 8 * face));
-    }
-    return bytes;
+    return bytesOf(mesh, grid, channels, grid.wordCount() * 4 > kDenseMost);
 }
 
 Voxels runVoxelizer(Queue& queue, const MeshInput& input, const Grid& grid, Channel channels, const char* name,
@@ -63,23 +117,8 @@ Voxels runVoxelizer(Queue& queue, const MeshInput& input, const Grid& grid, Chan
     if (!grid.isBox() && (!row.cameraGrids && grid.desc().kind != VITRAIL_GRID_ORTHOGRAPHIC))
         throw Error(ErrorCode::unsupported, {std::string(name) + " works on box and orthographic grids; this one is perspective", "", "",
                                              "sampled or points"});
-    // Refused as a whole, before anything is taken.
-    const std::uint64_t need = estimateVoxelizer(input, grid, Channel::none);
-    const DeviceInfo device = queue.deviceInfo();
-    const std::uint64_t limit = queue.memoryLimit();
-    if (grid.wordCount() * 4 > device.maxBufferBytes || need > limit) {
-        const bool buffer = grid.wordCount() * 4 > device.maxBufferBytes;
-        const double room = buffer ? double(device.maxBufferBytes) / double(grid.wordCount() * 4) : double(limit) / double(need);
-        const Uint3 size = grid.size();
-        throw Error(ErrorCode::outOfMemory,
-                    {std::string(name) + ": a grid of " + grid.text() + " needs " + bytesText(buffer ? grid.wordCount() * 4 : need) +
-                         (buffer ? " of bits; this device allows " + bytesText(device.maxBufferBytes) + " in one buffer"
-                                 : "; the memory limit is " + bytesText(limit)),
-                     "device: " + device.name + " (" + device.platform + ")",
-                     "voxelizing " + std::to_string(input.triangleCount()) + " triangles",
-                     std::to_string(static_cast<std::uint64_t>(std::max({size.x, size.y, size.z}) * std::cbrt(room) * 0.98)) +
-                         " voxels along the longest axis or fewer"});
-    }
+    const bool bricks = inBricks(queue, input, grid);
+    refuse(queue, input, grid, name, bricks);
 
     Call call(queue, std::string("voxelizing ") + std::to_string(input.triangleCount()) + " triangles");
     call.step(name, 0.0);
@@ -100,14 +139,21 @@ Voxels runVoxelizer(Queue& queue, const MeshInput& input, const Grid& grid, Chan
     out->options = options;
     out->triangles = mesh.triangleCount();
     out->record = call.record();
-    out->bits = workspace.take<std::uint32_t>(grid.wordCount(), "bits of a grid of " + grid.text());
     out->status = workspace.take<std::uint32_t>(kStatusWords, "counts");
     Buffer<Task> tasks = workspace.take<Task>(kTaskCapacity, "task list");
-    call.fill(out->bits, 0);
-    call.fill(out->status, 0);
-
     const Program program{"voxelize", realOptions(queue)};
     Pass pass{call, mesh, program, *out, tasks};
+    if (bricks) {
+        out->bricks = workspace.take<std::uint32_t>(2 * groupsOfTiles(grid), "directory of bricks");
+        call.fill(out->bricks, 0);
+        call.fill(out->status, 0);
+        mark(pass, nullptr);  // without bits: notes which tiles need a brick
+        makeBricks(call, *out);
+    } else {
+        out->bits = workspace.take<std::uint32_t>(grid.wordCount(), "bits of a grid of " + grid.text());
+        call.fill(out->bits, 0);
+    }
+    call.fill(out->status, 0);
     mark(pass, nullptr);
     if (channels != Channel::none) {
         makeRank(*out);

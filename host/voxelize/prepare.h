@@ -59,7 +59,8 @@ struct MarkChannels {
     const Buffer<std::uint32_t>*list = nullptr, *cursor = nullptr;  // triangles of each voxel, and where its next one goes
 };
 
-/// Checks, uploads, takes memory, and calls `mark(pass, null)` for the bits and, with channels, `mark(pass, channels)`.
+/// Checks, uploads, takes memory, and calls `mark(pass, null)` for the bits and, with channels, `mark(pass, channels)`. Where bits lie in
+/// bricks it calls `mark(pass, null)` once before with no pass.out.bits, to find the tiles that need one.
 Voxels runVoxelizer(Queue& queue, const MeshInput& mesh, const Grid& grid, Channel channels, const char* name, const std::string& options,
                     const std::function<void(Pass&, const MarkChannels*)>& mark);
 
@@ -77,7 +78,7 @@ void withMarkBuffers(Pass& pass, const MarkChannels* channels, Run&& run) {
     const DeviceMesh& mesh = pass.mesh;
     const Buffer<std::uint32_t> empty;
     const Buffer<std::int64_t> emptySums;
-    run(mesh.positions(), mesh.indices(), mesh.vertexCount(), mesh.materials(), pass.out.bits, channels != nullptr ? pass.out.rank : empty,
+    run(mesh.positions(), mesh.indices(), mesh.vertexCount(), mesh.materials(), pass.out.bits, pass.out.bricks, channels != nullptr ? pass.out.rank : empty,
         to.counts ? *to.counts : empty, to.normalSums ? *to.normalSums : emptySums, to.materials ? *to.materials : empty,
         to.list ? *to.list : empty, to.cursor ? *to.cursor : empty);
 }

@@ -22,8 +22,12 @@ Voxels voxelize(Queue& queue, const MeshInput& mesh, const Grid& grid, const Sol
                                     Buffer<std::uint32_t> beyond = queue.workspace().take<std::uint32_t>(columnWords(grid), "columns");
                                     pass.call.fill(beyond, 0);
                                     detail::launchMark(pass, "solid", nullptr, beyond);
-                                    pass.call.launchRange(pass.program, "solid_sweep", std::uint64_t(desc.tilesX) * desc.tilesY * 8, desc,
-                                                          pass.out.bits, beyond, pass.out.status);
+                                    const std::uint64_t stacks = std::uint64_t(desc.tilesX) * desc.tilesY;
+                                    if (!pass.out.bits)
+                                        pass.call.launchRange(pass.program, "solid_bricks", stacks, desc, pass.out.bricks, beyond);
+                                    else
+                                        pass.call.launchRange(pass.program, "solid_sweep", stacks * 8, desc, pass.out.bits, pass.out.bricks, beyond,
+                                                              pass.out.status);
                                 });
 }
 

@@ -30,7 +30,7 @@ SurfaceVoxels voxelizeSurface(Queue& queue, const DeviceMesh& mesh, const Grid& 
     call.step("surface: gather", 0.75);
     out.surface = workspace.take<vitrail_SurfaceVoxel>(occupied, "surface records");
     call.launchRange(program, "surface_gather", rank.size(), grid.desc(), mesh.positions(), mesh.indices(), mesh.vertexCount(), mesh.normals(), bits,
-                     rank, counts, list, cursor, out.surface);
+                     out.voxels.brickTiles(), rank, counts, list, cursor, out.surface);
     return out;
 }
 

@@ -8,6 +8,7 @@
 // status: where triangles are counted, or null.
 kernel void per_slice_mark(const vitrail_GridDesc grid, uint slice, global uint* status, MARK_BUFFERS, ulong count, uint perItem) {
     const Channels channels = MARK_CHANNELS;
+    const Bits bits = MARK_BITS;
     FOR_RANGE(i, count, perItem) {
         const uint triangle = (uint)i;
         uint corner[3], from, to;
@@ -22,6 +23,6 @@ kernel void per_slice_mark(const vitrail_GridDesc grid, uint slice, global uint*
         samples_share(rank ? &channels : 0, positions, corner, materials, triangle, &share);
         slab_begin(&grid, &s, REAL(0), &slab);
         slab_at(&s, slice, &slab);
-        samples_rows(&grid, &s, s.xLeast, s.xMost, slab.yLeast, slab.yMost, &slab, bits, &share);
+        samples_rows(&grid, &s, s.xLeast, s.xMost, slab.yLeast, slab.yMost, &slab, &bits, &share);
     }
 }

@@ -1,4 +1,4 @@
-// lib/bits.cl: occupancy bits in tiles (layout/grid.h) and the rank of an occupied voxel.
+// lib/bits.cl: occupancy bits in tiles (layout/grid.h), all of them or bricks of those that hold a voxel, and the rank of an occupied voxel.
 #ifndef VITRAIL_LIB_BITS
 #define VITRAIL_LIB_BITS
 #include "layout/grid.h"
@@ -14,13 +14,44 @@
 #define BITS_LOOK true
 #endif
 
-// Index of the word that holds slices 0 to 31 of column (x, y); the next 32 slices are VITRAIL_WORDS_PER_TILE words further.
-INLINE size_t bits_column(const vitrail_GridDesc* grid, uint x, uint y) {
-    return ((size_t)(y >> 3) * grid->tilesX + (x >> 3)) * grid->size.w * VITRAIL_WORDS_PER_TILE + (y & 7u) * 8u + (x & 7u);
+// Where bits go. bricks: null where every tile has its words. words: null in the launch that finds out which tiles need a brick.
+typedef struct {
+    global uint* words;
+    global uint2* bricks;
+} Bits;
+
+// The tile of a column's slices 0 to 31; the next 32 slices are one tile further.
+INLINE size_t bits_tile(const vitrail_GridDesc* grid, uint x, uint y) {
+    return ((size_t)(y >> 3) * grid->tilesX + (x >> 3)) * grid->size.w;
+}
+INLINE uint bits_in_tile(uint x, uint y) { return (y & 7u) * 8u + (x & 7u); }
+
+// The brick of a tile, 0 where it has none. bricks[i]: which of tiles 32 i to 32 i + 31 have one, and the number of the first of those.
+INLINE size_t bits_brick(global const uint2* bricks, size_t tile) {
+    if (!bricks) return tile;
+    const uint2 group = bricks[tile >> 5];
+    const uint bit = 1u << ((uint)tile & 31u);
+    return (group.x & bit) ? group.y + popcount(group.x & (bit - 1u)) : 0u;
 }
 
-INLINE size_t bits_word(const vitrail_GridDesc* grid, uint x, uint y, uint z) {
-    return bits_column(grid, x, y) + (size_t)(z >> 5) * VITRAIL_WORDS_PER_TILE;
+// Index of the word of a cell, to read.
+INLINE size_t bits_word(const vitrail_GridDesc* grid, global const uint2* bricks, uint x, uint y, uint z) {
+    return bits_brick(bricks, bits_tile(grid, x, y) + (z >> 5)) * VITRAIL_WORDS_PER_TILE + bits_in_tile(x, y);
+}
+
+// The words of a tile, to set bits in. False where there is only to be noted that it needs a brick, which is done then.
+INLINE bool bits_open(const Bits* to, size_t tile, global uint** words) {
+    if (to->bricks) {
+        if (!to->words) {
+            global uint* group = (global uint*)(to->bricks + (tile >> 5));
+            const uint bit = 1u << ((uint)tile & 31u);
+            if (!BITS_LOOK || !(*group & bit)) atomic_or(group, bit);
+            return false;
+        }
+        tile = bits_brick(to->bricks, tile);
+    }
+    *words = to->words + tile * VITRAIL_WORDS_PER_TILE;
+    return true;
 }
 
 // Bits `first` to `last` of a word, 0 <= first <= last <= 31.
@@ -56,12 +87,19 @@ INLINE void bits_set_often(global uint* word, uint mask) {
 }
 
 // Sets slices zFirst to zLast of a column, most of which are likely to be there.
-INLINE void bits_set_run(global uint* bits, size_t column, uint zFirst, uint zLast) {
+INLINE void bits_set_run(const Bits* to, const vitrail_GridDesc* grid, uint x, uint y, uint zFirst, uint zLast) {
     const uint wFirst = zFirst >> 5, wLast = zLast >> 5;
     for (uint w = wFirst; w <= wLast; ++w) {
         const uint mask = bits_mask(w == wFirst ? (zFirst & 31u) : 0u, w == wLast ? (zLast & 31u) : 31u);
-        bits_set_often(bits + column + (size_t)w * VITRAIL_WORDS_PER_TILE, mask);
+        global uint* words;
+        if (bits_open(to, bits_tile(grid, x, y) + w, &words)) bits_set_often(words + bits_in_tile(x, y), mask);
     }
+}
+
+// ORs bits of slices z & ~31 to z | 31 of a column.
+INLINE void bits_set(const Bits* to, const vitrail_GridDesc* grid, uint x, uint y, uint z, uint mask) {
+    global uint* words;
+    if (bits_open(to, bits_tile(grid, x, y) + (z >> 5), &words)) atomic_or(words + bits_in_tile(x, y), mask);
 }
 
 // Index of bit `bit` of word `word` among all occupied voxels.

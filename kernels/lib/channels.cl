@@ -8,7 +8,8 @@
 
 // Buffers of the channels asked for; the others are null.
 typedef struct {
-    global const uint* bits;
+    global const uint* words;
+    global const uint2* bricks;
     global const uint* rank;
     global uint* count;
     global long* normalSum;  // three a voxel
@@ -19,7 +20,7 @@ typedef struct {
 
 // `times` fragments of one triangle in a voxel.
 static inline void channels_add_times(const Channels* channels, size_t word, uint bit, const long normal[3], uint material, uint times) {
-    const size_t index = bits_rank(channels->bits, channels->rank, word, bit);
+    const size_t index = bits_rank(channels->words, channels->rank, word, bit);
     if (channels->count) atomic_add(channels->count + index, times);
     if (channels->normalSum)
         for (int k = 0; k < 3; ++k) fixed_add(channels->normalSum + 3 * index + k, normal[k] * (long)times);
@@ -30,7 +31,7 @@ static inline void channels_add(const Channels* channels, size_t word, uint bit,
                                 uint triangle) {
     channels_add_times(channels, word, bit, normal, material, 1u);
     if (channels->list) {
-        const size_t index = bits_rank(channels->bits, channels->rank, word, bit);
+        const size_t index = bits_rank(channels->words, channels->rank, word, bit);
         channels->list[atomic_inc(channels->cursor + index)] = triangle;
     }
 }

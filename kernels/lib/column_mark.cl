@@ -10,7 +10,7 @@
 // Where the cells of one triangle go.
 typedef struct {
     const vitrail_GridDesc* grid;
-    global uint* bits;         // unless there are channels
+    Bits bits;                 // unless there are channels
     const Channels* channels;
     long normal[3];
     uint material, triangle;
@@ -19,17 +19,20 @@ typedef struct {
 // Marks slices [first, end) of eight columns, x from a multiple of eight on; zFirst <= them < zEnd.
 INLINE void column_mark_row(const Mark* mark, int x, int y, int8 first, int8 end, int zFirst, int zEnd,
                                   const bool often) {
-    const size_t word = bits_column(mark->grid, (uint)x, (uint)y);
     if (!mark->channels) {
-        for (int block = zFirst >> 5; block <= (zEnd - 1) >> 5; ++block)
-            bits_set_row(mark->bits + word + (size_t)block * VITRAIL_WORDS_PER_TILE, bits_masks(first - block * 32, end - block * 32),
-                         often);
+        const size_t tile = bits_tile(mark->grid, (uint)x, (uint)y);
+        for (int block = zFirst >> 5; block <= (zEnd - 1) >> 5; ++block) {
+            const uint8 mask = bits_masks(first - block * 32, end - block * 32);
+            global uint* words;
+            if (mark->bits.words || any(mask != 0u))
+                if (bits_open(&mark->bits, tile + (size_t)block, &words)) bits_set_row(words + bits_in_tile((uint)x, (uint)y), mask, often);
+        }
         return;
     }
     for (int lane = 0; lane < LANES; ++lane)
         for (int z = lanes_int_at(&first, lane); z < lanes_int_at(&end, lane); ++z)
-            channels_add(mark->channels, word + (size_t)(z >> 5) * VITRAIL_WORDS_PER_TILE + lane, (uint)z & 31u, mark->normal,
-                         mark->material, mark->triangle);
+            channels_add(mark->channels, bits_word(mark->grid, mark->channels->bricks, (uint)(x + lane), (uint)y, (uint)z), (uint)z & 31u,
+                         mark->normal, mark->material, mark->triangle);
 }
 
 // Marks the cells of the triangle in `lane` in columns [xLeast, xMost] x [yLeast, yMost].
@@ -81,7 +84,7 @@ INLINE void column_triangle(bool thin, const Runs* runs, int lane, global const 
     const int zLeast = lanes_int_at(&runs->first[2], lane), zMost = lanes_int_at(&runs->last[2], lane);
     // Within one column a triangle touches every cell of its box.
     if (!thin && !mark->channels && !(state & RUN_CLIPPED) && xLeast == xMost && yLeast == yMost) {
-        bits_set_run(mark->bits, bits_column(mark->grid, (uint)xLeast, (uint)yLeast), (uint)zLeast, (uint)zMost);
+        bits_set_run(&mark->bits, mark->grid, (uint)xLeast, (uint)yLeast, (uint)zLeast, (uint)zMost);
         return;
     }
     if (tasks_columns(&xLeast, &xMost, &yLeast, &yMost, block, tasks, taskCapacity, status, mark->triangle)) return;
@@ -99,7 +102,7 @@ INLINE void column_triangle(bool thin, const Runs* runs, int lane, global const 
 
 #define COLUMN_MARK(thin)                                                                                                            \
     const Channels channels = MARK_CHANNELS;                                                                                         \
-    Mark mark = {&grid, bits, rank ? &channels : 0, {0, 0, 0}, 0u, 0u};                                                              \
+    Mark mark = {&grid, MARK_BITS, rank ? &channels : 0, {0, 0, 0}, 0u, 0u};                                                              \
     MARK_EIGHTS(triangles, blocks, live, {                                                                                           \
         Runs runs;                                                                                                                   \
         run_setup(thin, &grid, positions, indices, vertexCount, triangles, live, &runs);                                             \

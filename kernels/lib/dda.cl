@@ -92,15 +92,15 @@ static inline bool dda_skip_brick(Dda* dda, const vitrail_GridDesc* grid) {
 
 // Walks on from the current cell (which is looked at first) to one that is occupied; false when there is none before the grid's end or
 // `bound` steps.
-static inline bool dda_find(Dda* dda, const vitrail_GridDesc* grid, global const uint* bits, global const uchar* mip, int bound,
-                            size_t* word) {
+static inline bool dda_find(Dda* dda, const vitrail_GridDesc* grid, global const uint* words, global const uint2* bricks,
+                            global const uchar* mip, int bound, size_t* word) {
     while (dda->steps < bound) {
-        const size_t at = bits_word(grid, (uint)dda->x, (uint)dda->y, (uint)dda->z);
+        const size_t at = bits_word(grid, bricks, (uint)dda->x, (uint)dda->y, (uint)dda->z);
         if (!((mip[at / VITRAIL_WORDS_PER_TILE] >> ((dda->z >> 3) & 3)) & 1)) {
             if (!dda_skip_brick(dda, grid)) return false;
             continue;
         }
-        if ((bits[at] >> (dda->z & 31)) & 1u) {
+        if ((words[at] >> (dda->z & 31)) & 1u) {
             *word = at;
             return true;
         }

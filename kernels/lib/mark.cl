@@ -9,15 +9,18 @@
 
 // What every such kernel reads and writes.
 #define MARK_BUFFERS                                                                                                                 \
-    global const float *positions, global const uint *indices, uint vertexCount, global const uint *materials, global uint *bits,    \
-        global const uint *rank, global uint *counts, global long *normalSums, global uint *materialIds, global uint *list,          \
+    global const float *positions, global const uint *indices, uint vertexCount, global const uint *materials, global uint *words,   \
+        global uint2 *bricks, global const uint *rank, global uint *counts, global long *normalSums, global uint *materialIds, global uint *list,          \
         global uint *cursor
 
 #define MARK_PARAMETERS \
     MARK_BUFFERS, global uint2 *tasks, uint taskCapacity, global uint *status, uint first, uint groups, ulong count, uint perItem
 
+// Where a launch without channels sets bits.
+#define MARK_BITS {words, bricks}
+
 // Buffers of the channels asked for; null in a launch that sets bits.
-#define MARK_CHANNELS {bits, rank, counts, normalSums, materialIds, list, cursor}
+#define MARK_CHANNELS {words, bricks, rank, counts, normalSums, materialIds, list, cursor}
 
 // A voxelizer without channels takes no notice of their buffers.
 #define MARK_WITHOUT_CHANNELS (void)materials, (void)rank, (void)counts, (void)normalSums, (void)materialIds, (void)list, (void)cursor

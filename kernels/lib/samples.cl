@@ -334,7 +334,7 @@ INLINE bool samples_depth(const vitrail_GridDesc* grid, const Samples* s, const 
 
 // The fragments of these columns: each in the slice of its depth, or with a slab those that it holds, all in its slice.
 INLINE void samples_rows(const vitrail_GridDesc* grid, const Samples* s, int xLeast, int xMost, int yLeast, int yMost, const Slab* slab,
-                         global uint* bits, const Share* share) {
+                         const Bits* bits, const Share* share) {
     const real depth = REAL(grid->size.z);
     for (int y = yLeast; y <= yMost; ++y) {
         Seen q;
@@ -347,11 +347,11 @@ INLINE void samples_rows(const vitrail_GridDesc* grid, const Samples* s, int xLe
             if (z < REAL(0) || z > depth) continue;
             if (slab && !slab_holds(grid, slab, z)) continue;
             const uint slice = slab ? slab->slice : samples_slice(grid, z);
-            const size_t word = bits_word(grid, (uint)x, (uint)y, slice);
             if (!share->channels)
-                atomic_or(bits + word, 1u << (slice & 31u));
+                bits_set(bits, grid, (uint)x, (uint)y, slice, 1u << (slice & 31u));
             else
-                channels_add(share->channels, word, slice & 31u, share->normal, share->material, share->triangle);
+                channels_add(share->channels, bits_word(grid, share->channels->bricks, (uint)x, (uint)y, slice), slice & 31u, share->normal,
+                             share->material, share->triangle);
         }
     }
 }

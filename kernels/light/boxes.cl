@@ -9,10 +9,10 @@
 #define BOXES_COUNT 1u
 #define BOXES_DIFFERENCE 2u
 
-// `shown` are the boxes; with BOXES_DIFFERENCE they are the union of both sets, `bits` this one and `other` the one to compare with.
+// `shown` are the boxes; with BOXES_DIFFERENCE they are the union of both sets, `words` this one and `other` the one to compare with.
 kernel void boxes_shade(const vitrail_GridDesc grid, const vitrail_CameraDesc camera, uint colouring, global const uint* shown,
-                        global const uchar* mip, global const uint* bits, global const uint* other, global const uint* rank,
-                        global const uint* channel, int bound, global float4* samples, ulong count, uint perItem) {
+                        global const uchar* mip, global const uint* words, global const uint2* bricks, global const uint* other,
+                        global const uint* rank, global const uint* channel, int bound, global float4* samples, ulong count, uint perItem) {
     FOR_RANGE(pixel, count, perItem) {
         float3 o, d;
         camera_ray(&camera, (uint)(pixel % camera.width), (uint)(pixel / camera.width), &o, &d);
@@ -21,7 +21,7 @@ kernel void boxes_shade(const vitrail_GridDesc grid, const vitrail_CameraDesc ca
         dda.steps = 0;
         size_t word;
         float4 seen = (float4)(1.0f, 1.0f, 1.0f, 0.0f);
-        if (dda_start(&dda, &grid, origin, d, 0.0f) && dda_find(&dda, &grid, shown, mip, bound, &word)) {
+        if (dda_start(&dda, &grid, origin, d, 0.0f) && dda_find(&dda, &grid, shown, bricks, mip, bound, &word)) {
             // The face that the ray came in by is the one whose boundary it crossed last.
             const float3 p = origin + dda.direction * dda.enter;
             const float3 inCell = p - (float3)((float)dda.x, (float)dda.y, (float)dda.z) - 0.5f;
@@ -36,10 +36,10 @@ kernel void boxes_shade(const vitrail_GridDesc grid, const vitrail_CameraDesc ca
             const uint bit = (uint)dda.z & 31u;
             float3 colour = face * 0.5f + 0.5f;
             if (colouring == BOXES_DIFFERENCE) {
-                const bool here = (bits[word] >> bit) & 1u, there = (other[word] >> bit) & 1u;
+                const bool here = (words[word] >> bit) & 1u, there = (other[word] >> bit) & 1u;
                 colour = here && there ? (float3)(0.75f) : there ? (float3)(0.85f, 0.08f, 0.05f) : (float3)(0.08f, 0.25f, 0.9f);
             } else if (channel) {
-                const uint value = channel[bits_rank(bits, rank, word, bit)];
+                const uint value = channel[bits_rank(words, rank, word, bit)];
                 if (colouring == BOXES_COUNT) {
                     const float h = clamp(log2((float)max(value, 1u)) / 6.0f, 0.0f, 1.0f);  // 1 to 64
                     const float3 low = (float3)(0.03f, 0.06f, 0.30f), mid = (float3)(0.02f, 0.45f, 0.30f), high = (float3)(1.0f, 0.85f, 0.1f);

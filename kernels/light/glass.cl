@@ -20,7 +20,8 @@
 // What a march needs; positions and directions in voxel coordinates, which for a box grid are the world's scaled and moved.
 typedef struct {
     const vitrail_GridDesc* grid;
-    global const uint* bits;
+    global const uint* words;
+    global const uint2* bricks;
     global const uint* rank;
     global const uchar* mip;
     global const vitrail_SurfaceVoxel* surface;
@@ -44,9 +45,9 @@ static inline bool glass_next(const Volume* volume, float3 origin, float3 direct
     if (dda_start(&dda, volume->grid, origin, direction, fmax(tLeast - REACH, 0.0f))) {
         float best = 1e30f;
         size_t word;
-        while (dda_find(&dda, volume->grid, volume->bits, volume->mip, volume->bound, &word)) {
+        while (dda_find(&dda, volume->grid, volume->words, volume->bricks, volume->mip, volume->bound, &word)) {
             if (found && dda.enter > best) break;
-            const uint index = bits_rank(volume->bits, volume->rank, word, (uint)dda.z & 31u);
+            const uint index = bits_rank(volume->words, volume->rank, word, (uint)dda.z & 31u);
             const vitrail_SurfaceVoxel s = volume->surface[index];
             if (s.centroid & VITRAIL_SURFACE_PRESENT) {
                 const float3 normal = frame_unpack_normal(s.normal);
@@ -233,11 +234,11 @@ static void glass_trace(const Volume* volume, float3 position, float3 normal, fl
 // One sample a pixel of the G-buffer: the picture.
 kernel void glass_shade(const vitrail_GridDesc grid, const vitrail_CameraDesc camera, const vitrail_LightDesc light,
                         global const float* positions, global const uint* indices, global const float* normals,
-                        global const uint* triangleMaterial, global const uint* nearest, global const uint* bits, global const uint* rank,
-                        global const uchar* mip, global const vitrail_SurfaceVoxel* surface, global const uint* voxelMaterial,
+                        global const uint* triangleMaterial, global const uint* nearest, global const uint* words, global const uint2* bricks,
+                        global const uint* rank, global const uchar* mip, global const vitrail_SurfaceVoxel* surface, global const uint* voxelMaterial,
                         global const vitrail_MaterialDesc* materials, global const float4* map, int bound, global uint* status,
                         global float4* samples, ulong first, ulong count, uint perItem) {
-    const Volume volume = {&grid, bits, rank, mip, surface, voxelMaterial, materials, bound};
+    const Volume volume = {&grid, words, bricks, rank, mip, surface, voxelMaterial, materials, bound};
     const float width = 2.0f * camera.up.w / (float)camera.height;  // of a pixel at distance 1; the ground's tiles are filtered by it
     FOR_RANGE(i, count, perItem) {
         const size_t pixel = first + i;
@@ -263,10 +264,10 @@ kernel void glass_shade(const vitrail_GridDesc grid, const vitrail_CameraDesc ca
 // One sample a pixel of the G-buffer: transmittance from the first surface point straight to the light; alpha 0 where there is none.
 kernel void glass_shadow(const vitrail_GridDesc grid, const vitrail_CameraDesc camera, const vitrail_LightDesc light,
                          global const float* positions, global const uint* indices, global const float* normals,
-                         global const uint* triangleMaterial, global const uint* nearest, global const uint* bits, global const uint* rank,
-                         global const uchar* mip, global const vitrail_SurfaceVoxel* surface, global const uint* voxelMaterial,
+                         global const uint* triangleMaterial, global const uint* nearest, global const uint* words, global const uint2* bricks,
+                         global const uint* rank, global const uchar* mip, global const vitrail_SurfaceVoxel* surface, global const uint* voxelMaterial,
                          global const vitrail_MaterialDesc* materials, int bound, global float4* samples, ulong first, ulong count, uint perItem) {
-    const Volume volume = {&grid, bits, rank, mip, surface, voxelMaterial, materials, bound};
+    const Volume volume = {&grid, words, bricks, rank, mip, surface, voxelMaterial, materials, bound};
     const float3 toLight = xyz(light.toLight);
     FOR_RANGE(i, count, perItem) {
         const size_t pixel = first + i;

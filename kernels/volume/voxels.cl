@@ -18,6 +18,20 @@ kernel void voxels_rank_chunks(global const uint* bits, global uint* rank, globa
     }
 }
 
+// The bricks in each group of 32 tiles, to be scanned.
+kernel void voxels_brick_counts(global const uint2* bricks, global uint* counts, ulong count, uint perItem) {
+    FOR_RANGE(i, count, perItem) counts[i] = popcount(bricks[i].x);
+}
+
+// bricks[i].y = number of the group's first brick, 0 being the empty one; tiles[brick] = where it lies.
+kernel void voxels_brick_tiles(global uint2* bricks, global const uint* before, global uint* tiles, ulong count, uint perItem) {
+    FOR_RANGE(i, count, perItem) {
+        uint brick = 1u + before[i];
+        bricks[i].y = brick;
+        for (uint rest = bricks[i].x; rest != 0u; rest &= rest - 1u) tiles[brick++] = (uint)i * 32u + (31u - clz(rest & (0u - rest)));
+    }
+}
+
 // mip[tile] bit b: slices 8b to 8b+7 of the tile hold a voxel.
 kernel void voxels_mip(global const uint* bits, global uchar* mip, ulong count, uint perItem) {
     FOR_RANGE(tile, count, perItem) {

@@ -31,7 +31,7 @@
 // Where points go: one write for the points of one word, or of one voxel, that follow each other.
 typedef struct {
     const vitrail_GridDesc* grid;
-    global uint* bits;  // unless there are channels
+    Bits bits;  // unless there are channels
     const Channels* channels;
     long normal[3];
     uint material;
@@ -43,11 +43,11 @@ typedef struct {
 
 static inline void points_flush(Scatter* s) {
     if (s->times == 0u) return;
-    const size_t word = bits_word(s->grid, s->x, s->y, s->z);
     if (!s->channels)
-        atomic_or(s->bits + word, s->mask);
+        bits_set(&s->bits, s->grid, s->x, s->y, s->z, s->mask);
     else
-        channels_add_times(s->channels, word, s->z & 31u, s->normal, s->material, s->times);
+        channels_add_times(s->channels, bits_word(s->grid, s->channels->bricks, s->x, s->y, s->z), s->z & 31u, s->normal, s->material,
+                           s->times);
     s->times = 0u;
 }
 
@@ -239,7 +239,7 @@ kernel void points_table(global real* table) {
     const int t[3] = {edges / (TABLE_FACTOR * TABLE_FACTOR) + 1, edges / TABLE_FACTOR % TABLE_FACTOR + 1, edges % TABLE_FACTOR + 1};
     const int n = points_inside((t[0] + t[1] + t[2] + 2) / 3 - id % 2, t);
     const Point unit[3] = {{REAL(0), REAL(0), REAL(0)}, {REAL(1), REAL(0), REAL(0)}, {REAL(0), REAL(1), REAL(0)}};
-    Scatter s = {0, 0, 0, {0, 0, 0}, 0u, 0u, 0u, 0u, 0u, 0u, table + (size_t)id * (2 * TABLE_ROOM), 0u};
+    Scatter s = {0, {0, 0}, 0, {0, 0, 0}, 0u, 0u, 0u, 0u, 0u, 0u, table + (size_t)id * (2 * TABLE_ROOM), 0u};
     points_tessellate(&s, unit, n, t);
     for (uint i = s.written; i < TABLE_ROOM; ++i)
         for (int k = 0; k < 2; ++k) s.weights[k * TABLE_ROOM + i] = s.weights[k * TABLE_ROOM + s.written - 1u];
@@ -248,15 +248,19 @@ kernel void points_table(global real* table) {
 // Marks cells of eight points, of which the first `count` are there.
 INLINE void points_mark_eight(const Scatter* s, int8 x, int8 y, int8 z, int8 inside, int count) {
     const vitrail_GridDesc* grid = s->grid;
-    const int8 word = (((y >> 3) * (int)grid->tilesX + (x >> 3)) * (int)grid->size.w + (z >> 5)) * (int)VITRAIL_WORDS_PER_TILE +
-                      (y & 7) * 8 + (x & 7);
+    const int8 tile = ((y >> 3) * (int)grid->tilesX + (x >> 3)) * (int)grid->size.w + (z >> 5), inTile = (y & 7) * 8 + (x & 7);
     const uint8 bit = as_uint8(inside) & ((uint8)(1u) << as_uint8(z & 31));
     for (int i = 0; i < count; ++i) {
-        const uint at = (uint)lanes_int_at(&word, i), mask = (uint)lanes_int_at((const int8*)&bit, i);
-        if (!s->channels)
-            bits_set_often(s->bits + at, mask);
-        else if (mask != 0u)
-            channels_add_times(s->channels, at, 31u - clz(mask), s->normal, s->material, 1u);
+        const size_t at = (size_t)lanes_int_at(&tile, i);
+        const uint in = (uint)lanes_int_at(&inTile, i), mask = (uint)lanes_int_at((const int8*)&bit, i);
+        global uint* words;
+        if (s->channels) {
+            if (mask != 0u)
+                channels_add_times(s->channels, bits_brick(s->channels->bricks, at) * VITRAIL_WORDS_PER_TILE + in, 31u - clz(mask),
+                                   s->normal, s->material, 1u);
+        } else if (mask != 0u && bits_open(&s->bits, at, &words)) {
+            bits_set_often(words + in, mask);
+        }
     }
 }
 
@@ -422,7 +426,7 @@ static inline void points_triangle(Scatter* s, float safetyFactor, global const 
 
 kernel void points_mark(const vitrail_GridDesc grid, float safetyFactor, global const real* table, MARK_PARAMETERS) {
     const Channels channels = MARK_CHANNELS;
-    Scatter s = {&grid, bits, rank ? &channels : 0, {0, 0, 0}, 0u, 0u, 0u, 0u, 0u, 0u, 0, 0u};
+    Scatter s = {&grid, MARK_BITS, rank ? &channels : 0, {0, 0, 0}, 0u, 0u, 0u, 0u, 0u, 0u, 0, 0u};
     const bool even = grid.kind != VITRAIL_GRID_PERSPECTIVE;
     MARK_EIGHTS(triangles, blocks, live, {
         Eight eight;
@@ -439,12 +443,14 @@ kernel void points_mark(const vitrail_GridDesc grid, float safetyFactor, global 
             if (!rank && lanes_int_at(&eight.flat, lane)) atomic_inc(status + STATUS_DEGENERATE);
             if (lanes_int_at(&eight.single, lane)) {
                 const uint times = (uint)lanes_int_at(&eight.times, lane);
+                const uint x = (uint)lanes_int_at(&eight.x, lane);
+                const uint y = (uint)lanes_int_at(&eight.y, lane);
                 const uint z = (uint)lanes_int_at(&eight.z, lane);
-                const size_t word = bits_word(&grid, (uint)lanes_int_at(&eight.x, lane), (uint)lanes_int_at(&eight.y, lane), z);
+                if (times == 0u) continue;
                 if (!rank)
-                    bits_set_often(bits + word, times != 0u ? 1u << (z & 31u) : 0u);
-                else if (times != 0u)
-                    channels_add_times(&channels, word, z & 31u, s.normal, s.material, times);
+                    bits_set_run(&s.bits, &grid, x, y, z, z);
+                else
+                    channels_add_times(&channels, bits_word(&grid, bricks, x, y, z), z & 31u, s.normal, s.material, times);
                 continue;
             }
             Point c[3];

@@ -5,7 +5,7 @@
 
 // One triangle, or one block of a big one (block >= 0). Returns without marking when it is not usable.
 static inline void sampled_triangle(const vitrail_GridDesc* grid, global const float* positions, global const uint* indices,
-                                    uint vertexCount, uint triangle, int block, global uint* bits, const Channels* channels,
+                                    uint vertexCount, uint triangle, int block, const Bits* bits, const Channels* channels,
                                     global const uint* materials, global uint2* tasks, uint taskCapacity, global uint* status) {
     uint corner[3];
     Samples s;
@@ -21,11 +21,12 @@ static inline void sampled_triangle(const vitrail_GridDesc* grid, global const f
 
 kernel void sampled_mark(const vitrail_GridDesc grid, MARK_PARAMETERS) {
     const Channels channels = MARK_CHANNELS;
+    const Bits bits = MARK_BITS;
     MARK_EIGHTS(triangles, blocks, live, {
         live &= samples_eight(&grid, positions, indices, vertexCount, triangles, false);
         for (int lane = 0; lane < LANES; ++lane)
             if (lanes_int_at(&live, lane))
-                sampled_triangle(&grid, positions, indices, vertexCount, triangles[lane], blocks[lane], bits, rank ? &channels : 0, materials,
+                sampled_triangle(&grid, positions, indices, vertexCount, triangles[lane], blocks[lane], &bits, rank ? &channels : 0, materials,
                                  tasks, taskCapacity, status);
     })
 }

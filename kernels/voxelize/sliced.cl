@@ -38,6 +38,7 @@ INLINE uint sliced_find(global const uint* offsets, uint triangles, uint task) {
 kernel void sliced_mark(const vitrail_GridDesc grid, float extension, global const uint* offsets, uint triangles, MARK_BUFFERS, uint first,
                         ulong count, uint perItem) {
     const Channels channels = MARK_CHANNELS;
+    const Bits bits = MARK_BITS;
     const size_t end = min((get_global_id(0) + 1) * (size_t)perItem, (size_t)count);
     size_t task = get_global_id(0) * (size_t)perItem;
     if (task >= end) return;
@@ -54,7 +55,7 @@ kernel void sliced_mark(const vitrail_GridDesc grid, float extension, global con
         slab_range(&grid, &s, slab.extension, &from, &to);
         for (; task < next; ++task) {
             slab_at(&s, from + (uint)(task - offsets[i]), &slab);
-            samples_rows(&grid, &s, s.xLeast, s.xMost, slab.yLeast, slab.yMost, &slab, bits, &share);
+            samples_rows(&grid, &s, s.xLeast, s.xMost, slab.yLeast, slab.yMost, &slab, &bits, &share);
         }
     }
 }

@@ -5,9 +5,9 @@
 #include "lib/samples.cl"
 #pragma OPENCL FP_CONTRACT OFF
 
-// beyond: a bit a column, toggled by crossings after the last cell's centre.
+// beyond: a bit a column, toggled by crossings after the last cell's centre; where only bricks are looked for, by those before it.
 static inline void solid_triangle(const vitrail_GridDesc* grid, global uint* beyond, global const float* positions, global const uint* indices,
-                                  uint vertexCount, uint triangle, int block, global uint* bits, global uint2* tasks, uint taskCapacity,
+                                  uint vertexCount, uint triangle, int block, const Bits* bits, global uint2* tasks, uint taskCapacity,
                                   global uint* status) {
     uint corner[3];
     Samples s;
@@ -26,35 +26,63 @@ static inline void solid_triangle(const vitrail_GridDesc* grid, global uint* bey
             if (!samples_depth(grid, &s, &q, x, &z)) continue;
             if (z < last) {
                 const uint cell = z < REAL(0.5f) ? 0u : (uint)(z + REAL(0.5f));
-                atomic_xor(bits + bits_word(grid, (uint)x, (uint)y, cell), 1u << (cell & 31u));
-            } else {
-                const size_t column = (size_t)y * grid->tilesX * 8u + (uint)x;
-                atomic_xor(beyond + column / 32u, 1u << (column & 31u));
+                global uint* words;
+                if (bits_open(bits, bits_tile(grid, (uint)x, (uint)y) + (cell >> 5), &words)) {
+                    atomic_xor(words + bits_in_tile((uint)x, (uint)y), 1u << (cell & 31u));
+                    continue;
+                }
+            } else if (!bits->words) {
+                continue;
             }
+            const size_t column = (size_t)y * grid->tilesX * 8u + (uint)x;
+            atomic_xor(beyond + column / 32u, 1u << (column & 31u));
         }
     }
 }
 
 kernel void solid_mark(const vitrail_GridDesc grid, global uint* beyond, MARK_PARAMETERS) {
     MARK_WITHOUT_CHANNELS;
+    const Bits bits = MARK_BITS;
     MARK_EIGHTS(triangles, blocks, live, {
         live &= samples_eight(&grid, positions, indices, vertexCount, triangles, true);
         for (int lane = 0; lane < LANES; ++lane)
             if (lanes_int_at(&live, lane))
-                solid_triangle(&grid, beyond, positions, indices, vertexCount, triangles[lane], blocks[lane], bits, tasks, taskCapacity, status);
+                solid_triangle(&grid, beyond, positions, indices, vertexCount, triangles[lane], blocks[lane], &bits, tasks, taskCapacity, status);
     })
 }
 
+// Tiles between the first and the last that a column of tiles toggles need a brick too, and those after where a column of it is odd.
+kernel void solid_bricks(const vitrail_GridDesc grid, global uint2* bricks, global const uint* odd, ulong count, uint perItem) {
+    const Bits touch = {0, bricks};
+    FOR_RANGE(stack, count, perItem) {
+        uint first = grid.size.w, last = 0u;
+        for (uint w = 0u; w < grid.size.w; ++w) {
+            const size_t tile = stack * grid.size.w + w;
+            if (!((atomic_or((global uint*)(bricks + (tile >> 5)), 0u) >> (tile & 31u)) & 1u)) continue;
+            first = min(first, w);
+            last = w;
+        }
+        for (uint row = 0u; row < 8u; ++row) {
+            const size_t column = ((stack / grid.tilesX * 8u + row) * grid.tilesX + stack % grid.tilesX) * 8u;
+            if ((odd[column / 32u] >> (column & 31u)) & 0xffu) last = grid.size.w - 1u;
+        }
+        global uint* none;
+        for (uint w = first; w <= last; ++w) bits_open(&touch, stack * grid.size.w + w, &none);
+    }
+}
+
 // Toggles to insides, for eight columns of a row of tiles at a time. A column is open when its toggles, with those beyond it, are odd.
-kernel void solid_sweep(const vitrail_GridDesc grid, global uint* bits, global const uint* beyond, global uint* status, ulong count,
+kernel void solid_sweep(const vitrail_GridDesc grid, global uint* words, global uint2* bricks, global const uint* beyond, global uint* status, ulong count,
                         uint perItem) {
     uint odd = 0u;
     FOR_RANGE(row, count, perItem) {
         const size_t tile = row / 8u, y = tile / grid.tilesX * 8u + row % 8u, column = (y * grid.tilesX + tile % grid.tilesX) * 8u;
-        global uint8* words = (global uint8*)(bits + tile * grid.size.w * VITRAIL_WORDS_PER_TILE + row % 8u * 8u);
         uint8 carry = (uint8)(0u);
         for (uint w = 0u; w < grid.size.w; ++w) {
-            uint8 inside = words[w * (VITRAIL_WORDS_PER_TILE / 8u)];
+            const size_t brick = bits_brick(bricks, tile * grid.size.w + w);
+            if (bricks && brick == 0u) continue;  // nothing is inside: before the first toggle or after the last
+            global uint8* eight = (global uint8*)(words + brick * VITRAIL_WORDS_PER_TILE + row % 8u * 8u);
+            uint8 inside = *eight;
             inside ^= inside << 1;
             inside ^= inside << 2;
             inside ^= inside << 4;
@@ -63,7 +91,7 @@ kernel void solid_sweep(const vitrail_GridDesc grid, global uint* bits, global c
             inside ^= carry;
             carry = as_uint8(as_int8(inside) >> 31);
             const uint slices = min(grid.size.z - w * 32u, 32u);
-            words[w * (VITRAIL_WORDS_PER_TILE / 8u)] = inside & (0xffffffffu >> (32u - slices));
+            *eight = inside & (0xffffffffu >> (32u - slices));
         }
         const uint8 after = (uint8)(beyond[column / 32u] >> (column & 31u)) >> (uint8)(0u, 1u, 2u, 3u, 4u, 5u, 6u, 7u);
         const uint8 unclosed = (carry ^ after) & 1u;

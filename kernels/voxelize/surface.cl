@@ -119,16 +119,16 @@ static inline vitrail_SurfaceVoxel surface_pack(const SurfaceSum* sum) {
 
 // One record an occupied voxel, a group of 512 cells at a time.
 kernel void surface_gather(const vitrail_GridDesc grid, global const float* positions, global const uint* indices, uint vertexCount,
-                           global const float* normals, global const uint* bits, global const uint* rank, global const uint* counts,
-                           global const uint* list, global const uint* cursor, global vitrail_SurfaceVoxel* surface, ulong count,
+                           global const float* normals, global const uint* words, global const uint* brickTiles, global const uint* rank,
+                           global const uint* counts, global const uint* list, global const uint* cursor, global vitrail_SurfaceVoxel* surface, ulong count,
                            uint perItem) {
     FOR_RANGE(group, count, perItem) {
         size_t index = rank[group];
         for (uint w = 0; w < VITRAIL_WORDS_PER_RANK; ++w) {
             const size_t word = group * VITRAIL_WORDS_PER_RANK + w;
-            uint rest = bits[word];
+            uint rest = words[word];
             if (rest == 0u) continue;
-            const size_t tile = word / VITRAIL_WORDS_PER_TILE, column = tile / grid.size.w;
+            const size_t brick = word / VITRAIL_WORDS_PER_TILE, tile = brickTiles ? brickTiles[brick] : brick, column = tile / grid.size.w;
             const uint inTile = (uint)(word % VITRAIL_WORDS_PER_TILE);
             const uint x = (uint)(column % grid.tilesX) * 8u + (inTile & 7u), y = (uint)(column / grid.tilesX) * 8u + (inTile >> 3);
             const uint zWord = (uint)(tile % grid.size.w) * 32u;

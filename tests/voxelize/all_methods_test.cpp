@@ -135,9 +135,10 @@ TEST_P(EveryVoxelizer, RefusesBeforeMemoryIsTaken) {
     Device device = Device::select();
     device.setMemoryLimit(2 << 20);
     Queue own(device);
-    for (const unsigned longest : {512u, 20000u}) {
+    for (const Storage storage : {Storage::dense, Storage::bricks}) {
+        own.setStorage(storage);
         try {
-            (void)voxelize(own, mesh, Grid::fit(mesh.bounds(), longest), method());
+            (void)voxelize(own, mesh, Grid::fit(mesh.bounds(), storage == Storage::dense ? 512 : 5000), method());
             ADD_FAILURE() << "no error";
         } catch (const Error& error) {
             EXPECT_EQ(error.code(), ErrorCode::outOfMemory);

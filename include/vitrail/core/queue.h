@@ -24,6 +24,13 @@ enum class Precision {
     single,  ///< single precision: `conservative` still misses nothing, its bounds move outward
 };
 
+/// How voxels lie in memory (vitrail/layout/grid.h).
+enum class Storage {
+    automatic,  ///< dense, or in bricks where that would pass 256 MiB, what the device allows in one buffer, or the memory limit
+    dense,      ///< for who reads the buffer with code of his own
+    bricks,     ///< memory for the tiles that hold a voxel; triangles are gone over twice
+};
+
 /// Belongs to one thread at a time, as do its workspace and what was made with it. Move-only.
 class Queue {
 public:
@@ -43,6 +50,9 @@ public:
 
     void setPrecision(Precision precision);
     Precision precision() const;  ///< single also where the device has no doubles
+
+    void setStorage(Storage storage);  ///< of voxels made from now on
+    Storage storage() const;
 
     /// Called between the steps of long calls; returning false cancels the call: Error (cancelled), outputs unchanged.
     void setProgress(std::function<bool(const Progress&)> progress);

@@ -26,6 +26,10 @@ VITRAIL_CHECK_SIZE(vitrail_GridDesc, 112);
 //   word(x, y, z) = (((y >> 3) * tilesX + (x >> 3)) * size.w + (z >> 5)) * 64 + (y & 7) * 8 + (x & 7), bit z & 31.
 // Bits of cells outside `size` (the last tiles may overhang) are always 0.
 #define VITRAIL_WORDS_PER_TILE 64u
+// Voxels of large grids hold bricks, the words of those tiles that have a voxel: brick b is words 64 b to 64 b + 63, brick 0 has none set,
+// the others follow in the order of their tiles. The directory has two words for tiles 32 i to 32 i + 31: a bit for each that has a
+// brick, and the number of the first of these.
+#define VITRAIL_TILES_PER_GROUP 32u
 // The rank directory holds, for each group of 16 words (512 cells), how many cells before the group are occupied.
 #define VITRAIL_WORDS_PER_RANK 16u
 

@@ -1,7 +1,7 @@
 // vitrail/volume/voxels.h: the result of every voxelizer: one bit a voxel, a rank directory, and channels that hold one entry per
 // *occupied* voxel (systems.md 2).
 //
-// Bits: vitrail/layout/grid.h. Rank: entry g is the number of occupied cells before group g of 512 cells (16 words); the index of an
+// Bits: vitrail/layout/grid.h, dense, or bricks where that takes less memory (bricks()). Rank: entry g is the number of occupied cells before group g of 512 cells (16 words); the index of an
 // occupied voxel is rank[g] + population count of the bits before it in the group. 32 bits: at most 2^32 - 1 occupied voxels.
 // Channels combine the fragments (triangle, voxel) of a voxel by rules that do not depend on order:
 //   count     u32, how many triangles marked the voxel
@@ -54,6 +54,7 @@ struct VoxelReport : CallReport {
     std::uint64_t openColumns = 0;          ///< of a solid: that cross the surface an odd number of times; what is inside them is a guess
     Uint3 grid{0};
     std::uint64_t occupied = 0;
+    std::uint64_t bricks = 0;               ///< tiles of 8 x 8 x 32 cells that memory was taken for; 0: all of the grid's
 };
 
 namespace detail {
@@ -74,6 +75,8 @@ public:
 
     // On the device. Rank and mip are made when first asked for.
     const Buffer<std::uint32_t>& bits() const;
+    const Buffer<std::uint32_t>& bricks() const;      ///< the directory of bricks; empty: bits() is dense
+    const Buffer<std::uint32_t>& brickTiles() const;  ///< the tile of each brick, [0] unused; empty: bits() is dense
     const Buffer<std::uint32_t>& rank() const;        ///< waits (its total must reach the host)
     const Buffer<std::uint8_t>& mip() const;
     const Buffer<std::uint32_t>& countBuffer() const;     ///< Error (badOption) if the channel was not asked for; likewise below
@@ -82,7 +85,7 @@ public:
 
     // On the host.
     std::uint64_t occupied() const;
-    const VoxelBits& host() const;
+    const VoxelBits& host() const;                        ///< dense; Error (outOfMemory) where that passes the memory limit: forEach() goes on
     const std::vector<std::uint32_t>& counts() const;     ///< by index of the occupied voxel
     const std::vector<std::uint32_t>& materials() const;
     const std::vector<Float3>& normals() const;           ///< unit
@@ -90,12 +93,12 @@ public:
     /// Calls f(Uint3 cell, std::uint64_t index) for every occupied voxel, in index order.
     template <class F>
     void forEach(F&& f) const {
-        const VoxelBits& bits = host();
-        const vitrail_GridDesc& d = bits.grid.desc();
+        const std::vector<std::uint32_t>&words = hostWords(), &tiles = hostTiles();
+        const vitrail_GridDesc& d = grid().desc();
         std::uint64_t index = 0;
-        for (std::uint64_t w = 0; w < bits.words.size(); ++w) {
-            for (std::uint32_t rest = bits.words[w]; rest != 0; rest &= rest - 1) {
-                const std::uint64_t tile = w / VITRAIL_WORDS_PER_TILE, column = tile / d.size.w;
+        for (std::uint64_t w = 0; w < words.size(); ++w) {
+            for (std::uint32_t rest = words[w]; rest != 0; rest &= rest - 1) {
+                const std::uint64_t brick = w / VITRAIL_WORDS_PER_TILE, tile = tiles.empty() ? brick : tiles[brick], column = tile / d.size.w;
                 const auto inTile = static_cast<std::uint32_t>(w % VITRAIL_WORDS_PER_TILE);
                 f(Uint3(static_cast<std::uint32_t>(column % d.tilesX) * 8 + (inTile & 7),
                         static_cast<std::uint32_t>(column / d.tilesX) * 8 + (inTile >> 3),
@@ -108,6 +111,9 @@ public:
     detail::VoxelsState& state() const { return *state_; }
 
 private:
+    const std::vector<std::uint32_t>& hostWords() const;  // those of bits()
+    const std::vector<std::uint32_t>& hostTiles() const;  // those of brickTiles()
+
     std::unique_ptr<detail::VoxelsState> state_;
 };
 
