@@ -1,8 +1,9 @@
-// bench/context.h: what every benchmark's record says of the machine.
+// bench/context.h: what benchmark programs share: their flags, and what every record says of the machine.
 #pragma once
 #include <benchmark/benchmark.h>
 
 #include <string>
+#include <vector>
 
 #include <vitrail/core/device.h>
 
@@ -12,4 +13,16 @@ inline void addMachineContext(const vitrail::DeviceInfo& device) {
     const vitrail::cli::Json machine = vitrail::cli::machineRecord(device);
     for (const auto& [key, value] : machine.items())
         benchmark::AddCustomContext(key, value.is_string() ? value.get<std::string>() : value.dump());
+}
+
+/// Google Benchmark's flags, `defaults` first. False where one is not known; a message is out then.
+inline bool initialize(int argc, char** argv, std::vector<std::string> defaults) {
+    std::vector<std::string> words{argv[0]};
+    words.insert(words.end(), defaults.begin(), defaults.end());
+    words.insert(words.end(), argv + 1, argv + argc);
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    int count = static_cast<int>(arguments.size());
+    benchmark::Initialize(&count, arguments.data());
+    return !benchmark::ReportUnrecognizedArguments(count, arguments.data());
 }

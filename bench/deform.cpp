@@ -167,14 +167,9 @@ void bench(benchmark::State& state, Queue& queue, Moving& moving, std::uint32_t 
 
 int main(int argc, char** argv) {
     // In turns, medians of five, unless told otherwise.
-    std::vector<std::string> words{argv[0], "--benchmark_repetitions=5", "--benchmark_enable_random_interleaving=true",
-                                   "--benchmark_report_aggregates_only=true", "--benchmark_min_time=0.1"};
-    words.insert(words.end(), argv + 1, argv + argc);
-    std::vector<char*> arguments;
-    for (std::string& word : words) arguments.push_back(word.data());
-    int count = static_cast<int>(arguments.size());
-    benchmark::Initialize(&count, arguments.data());
-    if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 2;
+    if (!initialize(argc, argv, {"--benchmark_repetitions=5", "--benchmark_enable_random_interleaving=true",
+                                 "--benchmark_report_aggregates_only=true", "--benchmark_min_time=0.1"}))
+        return 2;
     try {
         Device device = Device::select();
         Queue queue(device);

@@ -99,8 +99,7 @@ int runVoxelize(const Options& options) {
     options.device.apply(queue);
     queue.setProgress(bar.callback());
     const Voxels voxels = voxelize(queue, mesh, grid, method);
-    voxels.host();
-    const VoxelReport report = voxels.report();
+    const VoxelReport report = voxels.report();  // waits
     stopIfInterrupted();
 
     std::vector<std::string> files;
@@ -126,7 +125,8 @@ int runVoxelize(const Options& options) {
     std::string text = options.mesh + ": " + countText(report.triangles) + " triangles in a grid of " + grid.text() + "\n" +
                        countText(report.occupied) + " voxels by " + report.method + " in " + msText(report.kernelMs) + " ms on the device, " +
                        msText(report.wallMs) + " ms in all (upload " + msText(report.uploadMs) + ", programs " + msText(report.buildMs) +
-                       "), " + detail::bytesText(report.deviceBytes) + " on the device\n";
+                       "), " + detail::bytesText(report.deviceBytes) + " on the device" +
+                       (report.bricks != 0 ? ", the voxels in " + countText(report.bricks) + " bricks" : "") + "\n";
     for (const std::string& file : files) text += file + "\n";
     std::fputs(text.c_str(), stdout);
     return 0;

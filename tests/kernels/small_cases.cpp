@@ -42,6 +42,12 @@ int main() {
                 const Voxels voxels = voxelize(queue, row.name == "points" ? longer : large, wide, method);
                 std::printf("%s, large: %llu voxels\n", voxels.report().method.c_str(),
                             static_cast<unsigned long long>(voxels.occupied()));
+                queue.setStorage(Storage::bricks);
+                const Voxels bricks = voxelize(queue, mesh, grids.back(), method);
+                (void)bricks.mip();
+                queue.setStorage(Storage::automatic);
+                std::printf("%s, in %llu bricks: %llu voxels\n", bricks.report().method.c_str(),
+                            static_cast<unsigned long long>(bricks.report().bricks), static_cast<unsigned long long>(bricks.occupied()));
             }
         }
 
