@@ -135,7 +135,7 @@ TEST_F(Program, ErrorsAreOne) {
     makeMesh();
     std::ofstream(folder_ / "broken.ply") << "ply\nformat ascii 1.0\nelement vertex 3\n";
     for (const std::string arguments : {"voxelize none.ply", "voxelize broken.ply", "info --device none-such",
-                                        "voxelize mesh.ply -r 20000", "compare mesh.ply -r 32 --against mesh.ply"}) {
+                                        "voxelize mesh.ply -r 60000", "compare mesh.ply -r 32 --against mesh.ply"}) {
         const Result result = run(arguments);
         EXPECT_EQ(result.code, 1) << arguments << "\n" << result.err;
         EXPECT_EQ(result.out, "") << arguments;
