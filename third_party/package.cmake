@@ -21,7 +21,7 @@ endfunction()
 vitrail_component(core core scene grid volume deform voxelize raster light metrics vitrail)
 vitrail_component(vdb vdb)
 vitrail_component(reference reference)
-vitrail_component(io io)
+vitrail_component(io io files images)
 
 install(DIRECTORY include/vitrail ${PROJECT_BINARY_DIR}/include/vitrail DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
   COMPONENT core FILES_MATCHING PATTERN "*.h")
@@ -33,4 +33,5 @@ install(FILES ${PROJECT_BINARY_DIR}/vitrailConfig.cmake ${PROJECT_BINARY_DIR}/vi
   DESTINATION ${package_folder} COMPONENT core)
 if(TARGET vitrail)
   install(TARGETS vitrail RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+  install(TARGETS ${VITRAIL_MODULES} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/vitrail COMPONENT program)
 endif()

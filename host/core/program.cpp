@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -71,12 +72,14 @@ void expand(const std::string& name, std::set<std::string>& seen, std::string& o
 struct Hash {
     std::uint64_t a = 14695981039346656037ull, b = 0x9e3779b97f4a7c15ull;
     void add(const void* data, std::size_t bytes) {
-        for (std::size_t i = 0; i < bytes; ++i) {
-            const unsigned char c = static_cast<const unsigned char*>(data)[i];
-            a = (a ^ c) * 1099511628211ull;
-            b = (b + c) * 0xff51afd7ed558ccdull;
+        for (std::size_t i = 0; i < bytes; i += sizeof(std::uint64_t)) {
+            std::uint64_t word = 0;
+            std::memcpy(&word, static_cast<const unsigned char*>(data) + i, std::min(bytes - i, sizeof word));
+            a = (a ^ word) * 1099511628211ull;
+            b = (b + word) * 0xff51afd7ed558ccdull;
             b ^= b >> 29;
         }
+        b += bytes;  // zeros at the end count
     }
     void add(const std::string& text) { add(text.data(), text.size() + 1); }
     std::string text() const {
@@ -91,8 +94,10 @@ constexpr char kMagic[8] = {'V', 'I', 'T', 'R', 'P', 'R', 'G', '1'};
 std::vector<unsigned char> readCached(const std::filesystem::path& file) {
     std::ifstream in(file, std::ios::binary);
     if (!in) return {};
-    std::string all((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+    std::ostringstream read;
+    read << in.rdbuf();
     in.close();
+    const std::string all = std::move(read).str();
     bool good = all.size() > sizeof kMagic + 32 && std::memcmp(all.data(), kMagic, sizeof kMagic) == 0;
     if (good) {
         Hash sum;

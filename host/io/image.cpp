@@ -1,19 +1,16 @@
-// io/image.cpp: pictures through OpenImageIO, from memory, so that a file and a picture inside another file take the same path.
+// io/image.cpp: pictures through OpenImageIO (images/images.h), from memory, so that a file and a picture inside another file
+// take the same path.
+#include <vitrail/core/error.h>
 #include <vitrail/io/image.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <cstring>
-#include <memory>
 #include <string_view>
 #include <vector>
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
-#include <vitrail/core/error.h>
-
+#include "images/images.h"
 #include "io/radiance.h"
 #include "io/readers.h"
 
@@ -22,14 +19,7 @@ inline namespace v0 {
 
 namespace {
 
-constexpr long long kMostPixels = 16384;  // along one side
-// No format packs more: deflate at its best leaves a byte for a thousand, of eight one-bit pixels each.
-constexpr long long kMostPixelsPerByte = 16384;
-
-[[noreturn]] void fail(const std::string& what, const std::string& name, const std::string& remedy = {},
-                       ErrorCode code = ErrorCode::badFile) {
-    throw Error(code, {"picture: " + what, name, "", remedy});
-}
+using io_detail::failPicture;
 
 std::string lowerExtension(const std::filesystem::path& file) {
     std::string extension = file.extension().string();
@@ -69,7 +59,7 @@ void expectWholePng(std::span<const std::byte> bytes, const std::string& name) {
         if (std::memcmp(&bytes[at + 4], "IEND", 4) == 0) return;
         at += 12 + length;
     }
-    fail("a chunk runs past the end, or the last one is missing", name, "the whole file");
+    failPicture("a chunk runs past the end, or the last one is missing", name, "the whole file");
 }
 
 // From a table: 8- and 16-bit values are whole multiples of 1/65535.
@@ -111,100 +101,35 @@ Picture upright(Picture stored, int orientation) {
     return turned;
 }
 
-std::string reasonOf(OIIO::ImageInput* input) {
-    std::string reason = input != nullptr ? input->geterror() : std::string();
-    const std::string general = OIIO::geterror();  // asked for in any case, so that none is left behind
-    if (reason.empty()) reason = general;
-    while (!reason.empty() && (reason.back() == '\n' || reason.back() == '.')) reason.pop_back();
-    return reason.empty() ? "the format's reader gives no reason" : reason;
-}
-
-Picture readWithOpenImageIO(std::span<const std::byte> bytes, std::string format, const std::string& name) {
-    if (format.empty()) format = lowerExtension(name);
-    std::unique_ptr<OIIO::ImageInput> input = format.empty() ? nullptr : OIIO::ImageInput::create(format);
-    if (!input) {
-        reasonOf(nullptr);
-        fail("its first bytes are those of no known format", name, ".hdr, .exr, .png, .jpg, .tif or .webp",
-             ErrorCode::unsupported);
-    }
-    if (!input->supports("ioproxy")) {
-        fail("the format " + format + " is not read", name, ".hdr, .exr, .png, .jpg, .tif or .webp", ErrorCode::unsupported);
-    }
-    OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(bytes.data()), bytes.size());
-    OIIO::ImageSpec config, spec;
-    OIIO::Filesystem::IOProxy* proxy = &memory;
-    config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-    config.attribute("oiio:UnassociatedAlpha", 1);
-    if (!input->open("in_memory." + format, spec, config)) fail(reasonOf(input.get()), name, "the whole file");
-
-    io_detail::expectPictureSize(spec.width, spec.height, bytes.size(), name);
-    if (spec.depth > 1 || spec.nchannels <= 0 || spec.nchannels > 64) {
-        fail(std::to_string(spec.nchannels) + " channels, " + std::to_string(spec.depth) + " deep", name, "a flat picture");
-    }
-    const auto w = static_cast<std::uint32_t>(spec.width), h = static_cast<std::uint32_t>(spec.height);
-
-    Picture picture(w, h, Float4(0.0f, 0.0f, 0.0f, 1.0f));
-    const int channels = std::min(spec.nchannels, 4);
-    if (!input->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, picture.pixels.data(), sizeof(Float4),
-                           static_cast<OIIO::stride_t>(sizeof(Float4)) * w)) {
-        fail(reasonOf(input.get()), name, "the whole file");
-    }
-    const bool encoded = !spec.format.is_floating_point() && spec.get_string_attribute("oiio:ColorSpace") != "Linear";
-    for (Float4& pixel : picture.pixels) {
-        if (channels == 2) pixel.w = pixel.y;
-        if (channels <= 2) pixel.y = pixel.z = pixel.x;
+Picture linear(io_detail::StoredImage image) {
+    for (Float4& pixel : image.picture.pixels) {
+        if (image.channels == 2) pixel.w = pixel.y;
+        if (image.channels <= 2) pixel.y = pixel.z = pixel.x;
         for (int c = 0; c < 4; ++c) pixel[c] = tidy(pixel[c]);
-        if (encoded) {
+        if (image.encoded) {
             for (int c = 0; c < 3; ++c) pixel[c] = fromSrgb(pixel[c]);
         }
     }
-    const int orientation = spec.get_int_attribute("Orientation", 1);
-    input->close();
-    reasonOf(input.get());
-    return upright(std::move(picture), orientation);
+    return upright(std::move(image.picture), image.orientation);
 }
 
 Picture decode(std::span<const std::byte> bytes, const std::string& name) {
-    if (bytes.empty()) fail("the file is empty", name);
+    if (bytes.empty()) failPicture("the file is empty", name);
     const std::string format = formatOf(bytes);
     if (format == "hdr") return io_detail::readRadiance(bytes, name);
     if (format == "png") expectWholePng(bytes, name);
     try {
-        return readWithOpenImageIO(bytes, format, name);
+        return linear(io_detail::decodeImage(bytes, format.empty() ? lowerExtension(name) : format, name));
     } catch (const Error&) {
         throw;
     } catch (const std::exception& error) {
         // Some of OpenImageIO's readers let those of the standard library through.
-        fail(std::string("the ") + (format.empty() ? "format's" : format) + " reader gave up: " + error.what(), name,
-             "the whole file");
+        failPicture(std::string("the ") + (format.empty() ? "format's" : format) + " reader gave up: " + error.what(), name,
+                    "the whole file");
     }
-}
-
-void write(const std::filesystem::path& path, const std::string& format, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
-           const void* pixels, const std::string& name) {
-    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
-    const bool good = output && output->open(path.string(), spec) && output->write_image(type, pixels) && output->close();
-    std::string reason = output ? output->geterror() : std::string();
-    if (const std::string general = OIIO::geterror(); reason.empty()) reason = general;
-    if (!good) fail("it cannot be written: " + reason, name, "a folder that can be written to, with space");
 }
 
 }  // namespace
-
-}  // namespace v0
-
-void io_detail::expectPictureSize(long long width, long long height, std::size_t bytes, const std::string& name) {
-    const std::string size = std::to_string(width) + " x " + std::to_string(height) + " pixels";
-    if (width <= 0 || height <= 0) fail(size, name, "a picture that holds something");
-    if (width > kMostPixels || height > kMostPixels) {
-        fail(size + ", more than " + std::to_string(kMostPixels) + " along a side", name, "a smaller version of it");
-    }
-    if (static_cast<std::size_t>(width * height / kMostPixelsPerByte) > bytes) {
-        fail(size + " cannot lie in " + std::to_string(bytes) + " bytes", name, "the whole file");
-    }
-}
-
-inline namespace v0 {
 
 Picture loadPicture(const std::filesystem::path& file) { return decode(io_detail::readFile(file), file.string()); }
 
@@ -213,22 +138,22 @@ Picture loadPictureFromMemory(std::span<const std::byte> bytes, const std::strin
 void savePicture(const std::filesystem::path& file, const Picture& picture, float exposure, ToneCurve curve) {
     const std::string name = file.string(), format = lowerExtension(file);
     if (format != "exr" && format != "png") {
-        fail("pictures are written as .exr or .png, not as " + (format.empty() ? "a file without ending" : "." + format), name,
-             "the ending .exr or .png", ErrorCode::unsupported);
+        failPicture("pictures are written as .exr or .png, not as " + (format.empty() ? "a file without ending" : "." + format),
+                    name, "the ending .exr or .png", ErrorCode::unsupported);
     }
     if (picture.width == 0 || picture.height == 0 ||
         picture.pixels.size() != static_cast<std::size_t>(picture.width) * picture.height) {
-        fail("a picture of " + std::to_string(picture.width) + " x " + std::to_string(picture.height) + " with " +
-                 std::to_string(picture.pixels.size()) + " pixels",
-             name, "a picture that holds something", ErrorCode::badInput);
+        failPicture("a picture of " + std::to_string(picture.width) + " x " + std::to_string(picture.height) + " with " +
+                        std::to_string(picture.pixels.size()) + " pixels",
+                    name, "a picture that holds something", ErrorCode::badInput);
     }
     if (!(exposure > 0.0f) || !std::isfinite(exposure)) {
-        fail("exposure " + std::to_string(exposure), name, "a number above 0", ErrorCode::badOption);
+        failPicture("exposure " + std::to_string(exposure), name, "a number above 0", ErrorCode::badOption);
     }
-    const int w = static_cast<int>(picture.width), h = static_cast<int>(picture.height);
     const bool opaque =
         std::all_of(picture.pixels.begin(), picture.pixels.end(), [](const Float4& pixel) { return pixel.w >= 1.0f; });
     const int channels = opaque ? 3 : 4;
+    const io_detail::ImageSize size{picture.width, picture.height, static_cast<std::uint32_t>(channels)};
     if (format == "exr") {
         std::vector<float> values;
         values.reserve(picture.pixels.size() * static_cast<std::size_t>(channels));
@@ -236,11 +161,7 @@ void savePicture(const std::filesystem::path& file, const Picture& picture, floa
             // Half floats end at 65504; beyond they would become infinite.
             for (int c = 0; c < channels; ++c) values.push_back(std::min(tidy(pixel[c]), 65504.0f));
         }
-        OIIO::ImageSpec spec(w, h, channels, OIIO::TypeDesc::HALF);
-        spec.attribute("compression", "zip");
-        io_detail::writeWhole(file, [&](const std::filesystem::path& path) {
-            write(path, "openexr", spec, OIIO::TypeDesc::FLOAT, values.data(), name);
-        });
+        io_detail::writeWhole(file, [&](const std::filesystem::path& path) { io_detail::encodeExr(path, size, values, name); });
         return;
     }
     const float white = hable(4.0f);
@@ -255,11 +176,7 @@ void savePicture(const std::filesystem::path& file, const Picture& picture, floa
             values.push_back(static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f)));
         }
     }
-    OIIO::ImageSpec spec(w, h, channels, OIIO::TypeDesc::UINT8);
-    spec.attribute("oiio:UnassociatedAlpha", 1);
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    io_detail::writeWhole(
-        file, [&](const std::filesystem::path& path) { write(path, "png", spec, OIIO::TypeDesc::UINT8, values.data(), name); });
+    io_detail::writeWhole(file, [&](const std::filesystem::path& path) { io_detail::encodePng(path, size, values, name); });
 }
 
 }  // namespace v0

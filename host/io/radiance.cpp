@@ -11,6 +11,8 @@
 
 #include <vitrail/core/error.h>
 
+#include "images/images.h"
+
 namespace vitrail::io_detail {
 
 namespace {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -202,6 +203,68 @@ TEST_F(Program, RenderWritesPictures) {
     EXPECT_EQ(run("render mesh.ply --effect voxels -r 16 --size 40x30 -o none/a.png").code, 1);
     EXPECT_EQ(run("render mesh.ply --effect voxels -r 16 --size 40x30 -o a.bmp").code, 1);
     EXPECT_EQ(files(), (std::set<std::string>{"mesh.ply", "out.png", "out.exr"}));
+}
+
+// OpenImageIO and OpenVDB, with all they need, would be most of a start's time.
+TEST_F(Program, LibrariesOfFormatsAreLoadedForTheirFiles) {
+    const auto loaded = [&](const std::string& arguments) {
+        const Result result = run(arguments, "LD_DEBUG=files");
+        EXPECT_EQ(result.code, 0) << arguments;
+        std::string names;
+        std::istringstream lines(result.err);
+        for (std::string line; std::getline(lines, line);)
+            if (line.find("calling init: ") != std::string::npos) names += line.substr(line.rfind('/') + 1) + "\n";
+        EXPECT_NE(names.find("libOpenCL.so"), std::string::npos) << "the loader told nothing\n" << result.err;
+        return names;
+    };
+    const auto has = [](const std::string& names, const char* library) { return names.find(library) != std::string::npos; };
+    makeMesh();
+    for (const std::string arguments : {"--version", "voxelize mesh.ply -r 16 -o out.npy"}) {
+        const std::string names = loaded(arguments);
+        EXPECT_FALSE(has(names, "libOpenImageIO")) << arguments << "\n" << names;
+        EXPECT_FALSE(has(names, "libopenvdb")) << arguments << "\n" << names;
+        EXPECT_LT(std::count(names.begin(), names.end(), '\n'), 60) << arguments << "\n" << names;
+    }
+    const std::string pictures = loaded("render mesh.ply --effect voxels -r 16 --size 40x30 -o out.png");
+    EXPECT_TRUE(has(pictures, "libOpenImageIO")) << pictures;
+#ifdef VITRAIL_HAS_VDB
+    const std::string volumes = loaded("voxelize mesh.ply -r 16 -o out.vdb");
+    EXPECT_TRUE(has(volumes, "libopenvdb")) << volumes;
+    EXPECT_FALSE(has(volumes, "libvitrail_images")) << volumes;
+#endif
+}
+
+TEST_F(Program, ErrorsComeOutOfModulesWhole) {
+    makeMesh();
+    std::ofstream(folder_ / "broken.exr") << "\x76\x2f\x31\x01 and no more";
+    std::ofstream(folder_ / "broken.vdb") << "no grid";
+    std::vector<std::string> runs{"render mesh.ply --effect glass -r 16 --size 40x30 --environment broken.exr -o out.png"};
+#if defined(VITRAIL_HAS_VDB) && defined(VITRAIL_HAS_REFERENCE)
+    runs.push_back("compare mesh.ply -r 32 --against broken.vdb");
+#endif
+    for (const std::string& arguments : runs) {
+        const Result result = run(arguments);
+        EXPECT_EQ(result.code, 1) << arguments << "\n" << result.err;
+        EXPECT_NE(result.err.find("\n  where:  broken."), std::string::npos) << result.err;
+        EXPECT_NE(result.err.find("\n  try:    "), std::string::npos) << result.err;
+    }
+}
+
+TEST_F(Program, AModuleThatIsMissingIsAnError) {
+    makeMesh();
+    fs::create_directory(folder_ / "bin");
+    const Result result = run("render mesh.ply --effect voxels -r 16 --size 40x30 -o out.png",
+                              "sh -c 'cp \"$0\" bin/vitrail && exec bin/vitrail \"$@\"'");
+    EXPECT_EQ(result.code, 1) << result.err;
+    EXPECT_EQ(result.err.rfind("vitrail: the module for pictures", 0), 0u) << result.err;
+    EXPECT_NE(result.err.find("libvitrail_images.so\n  try:    "), std::string::npos) << result.err;
+    EXPECT_EQ(files(), (std::set<std::string>{"bin", "mesh.ply"}));
+}
+
+TEST_F(Program, TheSecondStartCompilesNothing) {
+    const std::string cache = "VITRAIL_CACHE_DIR='" + folder_.string() + "'";
+    EXPECT_NE(run("info", cache).out.find("compiled in "), std::string::npos);
+    EXPECT_NE(run("info", cache).out.find("loaded from the cache in "), std::string::npos);
 }
 
 #ifdef VITRAIL_HAS_REFERENCE
