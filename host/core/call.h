@@ -17,9 +17,10 @@ namespace detail {
 
 struct Record;
 
-/// The kernels of one part (all of kernels/<part>/*.cl), built once with these options.
+/// The kernels of one file (kernels/<part>.cl, "voxelize/points") or of all files of a part (kernels/<part>/*.cl, "volume"), built once with
+/// these options. Drivers compile all kernels of a program, so those that are seldom used together are programs of their own.
 struct Program {
-    const char* part;
+    std::string part;
     std::string options;
 };
 

@@ -137,7 +137,7 @@ void writeCached(const std::filesystem::path& file, const std::vector<unsigned c
 std::string expandPart(const std::string& part) {
     std::set<std::string> names;
     for (const KernelFile& file : kernelTable())
-        if (std::string(file.name).rfind(part + "/", 0) == 0) names.insert(file.name);
+        if (file.name == part + ".cl" || std::string(file.name).rfind(part + "/", 0) == 0) names.insert(file.name);
     if (names.empty()) throw Error(ErrorCode::buildFailed, {"there are no kernels of part \"" + part + "\"", "", "", "core, volume, voxelize, raster or light"});
     std::set<std::string> seen;
     std::string text;
@@ -157,10 +157,12 @@ cl::Program program(DeviceState& device, const std::string& part, const std::str
     for (const std::string& piece : {text, flags, device.info.platform, device.info.platformVersion, device.info.name,
                                      device.info.driverVersion, std::string(VITRAIL_VERSION)})
         key.add(piece);
+    std::string fileName = part;
+    std::replace(fileName.begin(), fileName.end(), '/', '-');
     const std::filesystem::path file =
         device.cacheFolder.empty()
             ? std::filesystem::path()
-            : std::filesystem::path(device.cacheFolder) / (part + "-" + key.text() + ".bin");
+            : std::filesystem::path(device.cacheFolder) / (fileName + "-" + key.text() + ".bin");
 
     if (!file.empty()) {
         if (const std::vector<unsigned char> binary = readCached(file); !binary.empty()) {
@@ -187,7 +189,7 @@ cl::Program program(DeviceState& device, const std::string& part, const std::str
         }
         std::string kept;
         if (!device.cacheFolder.empty()) {
-            kept = (std::filesystem::path(device.cacheFolder) / (part + "-failed.cl")).string();
+            kept = (std::filesystem::path(device.cacheFolder) / (fileName + "-failed.cl")).string();
             std::ofstream(kept, std::ios::binary) << text;
         }
         throw Error(ErrorCode::buildFailed, {"the kernels of part \"" + part + "\" do not compile with \"" + flags + "\": " +

@@ -141,7 +141,7 @@ Voxels runVoxelizer(Queue& queue, const MeshInput& input, const Grid& grid, Chan
     out->record = call.record();
     out->status = workspace.take<std::uint32_t>(kStatusWords, "counts");
     Buffer<Task> tasks = workspace.take<Task>(kTaskCapacity, "task list");
-    const Program program{"voxelize", realOptions(queue)};
+    const Program program{std::string("voxelize/") + name, realOptions(queue)};
     Pass pass{call, mesh, program, *out, tasks};
     if (bricks) {
         out->bricks = workspace.take<std::uint32_t>(2 * groupsOfTiles(grid), "directory of bricks");

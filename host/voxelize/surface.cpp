@@ -23,14 +23,14 @@ SurfaceVoxels voxelizeSurface(Queue& queue, const DeviceMesh& mesh, const Grid& 
                                              "a coarser grid"});
     Buffer<std::uint32_t> list = workspace.take<std::uint32_t>(fragments, "triangle lists");
     Buffer<detail::Task> tasks = workspace.take<detail::Task>(detail::kTaskCapacity, "task list");
-    const detail::Program program{"voxelize", detail::realOptions(queue)};
-    detail::Pass pass{call, mesh, program, out.voxels.state(), tasks};
+    const detail::Program conservative{"voxelize/conservative", detail::realOptions(queue)};
+    detail::Pass pass{call, mesh, conservative, out.voxels.state(), tasks};
     const detail::MarkChannels to{.list = &list, .cursor = &cursor};
     detail::launchMark(pass, "conservative", &to);
     call.step("surface: gather", 0.75);
     out.surface = workspace.take<vitrail_SurfaceVoxel>(occupied, "surface records");
-    call.launchRange(program, "surface_gather", rank.size(), grid.desc(), mesh.positions(), mesh.indices(), mesh.vertexCount(), mesh.normals(), bits,
-                     out.voxels.brickTiles(), rank, counts, list, cursor, out.surface);
+    call.launchRange(detail::Program{"voxelize/surface", conservative.options}, "surface_gather", rank.size(), grid.desc(), mesh.positions(),
+                     mesh.indices(), mesh.vertexCount(), mesh.normals(), bits, out.voxels.brickTiles(), rank, counts, list, cursor, out.surface);
     return out;
 }
 
