@@ -35,6 +35,7 @@ int main(int argc, char** argv) {
     addVoxelize(app, run);
     addCompare(app, run);
     addRender(app, run);
+    addJudge(app, run);
     if (argc == 1) {
         std::fputs(app.help().c_str(), stderr);
         return 2;

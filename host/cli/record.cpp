@@ -156,6 +156,22 @@ Json record(const ImageReport& report) {
             {"singlePrecision", report.singlePrecision}};
 }
 
+Json record(const RayErrors& errors) {
+    Json faults;
+    const char* names[] = {"none", "outside", "missed", "held", "tooFew", "tooMany", "drifted"};
+    for (std::size_t i = 0; i < errors.faults.size(); ++i) faults[names[i]] = errors.faults[i];
+    return {{"pixels", errors.pixels},
+            {"correct", errors.correct},
+            {"close", errors.close},
+            {"medianDegrees", errors.medianDegrees},
+            {"worstDegrees", errors.worstDegrees},
+            {"stablePixels", errors.stablePixels},
+            {"stableCorrect", errors.stableCorrect},
+            {"transmittanceMean", errors.transmittanceMean},
+            {"transmittanceWorst", errors.transmittanceWorst},
+            {"faults", std::move(faults)}};
+}
+
 void addErrors(Json& record, const VoxelDifference& conservative, const VoxelDifference& thin, const Watertight& watertight) {
     record["missing"] = conservative.missingShare();
     record["missingCount"] = conservative.missing;

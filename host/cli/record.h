@@ -9,6 +9,7 @@
 #include <vitrail/core/device.h>
 #include <vitrail/light/image.h>
 #include <vitrail/methods.h>
+#include <vitrail/metrics/rays.h>
 #include <vitrail/metrics/voxels.h>
 #include <vitrail/metrics/watertight.h>
 #include <vitrail/scene/mesh.h>
@@ -31,6 +32,7 @@ Json record(const MeshReport& mesh);
 Json record(const Grid& grid);  ///< size, origin, edge
 Json record(const VoxelReport& report);
 Json record(const ImageReport& report);
+Json record(const RayErrors& errors);
 
 const char* name(Family family);
 const char* name(Guarantee guarantee);

@@ -31,31 +31,11 @@ struct Options {
     DeviceOptions device;
 };
 
-void parseSize(const std::string& text, std::uint32_t& width, std::uint32_t& height) {
-    char rest = 0;
-    if (std::sscanf(text.c_str(), "%ux%u%c", &width, &height, &rest) != 2 || width == 0 || height == 0 || width > 8192 || height > 8192)
-        throw Error(ErrorCode::badOption, {.what = "--size " + text + " is no picture size", .remedy = "WIDTHxHEIGHT in pixels, 1 to 8192 each, such as 768x768"});
-}
-
 /// The exposure at which the mean (of logarithms) of the luminance becomes a middle grey of the tone curve.
 float automaticExposure(const Picture& picture) {
     double sum = 0;
     for (const Float4& p : picture.pixels) sum += std::log(1e-4 + 0.2126 * p.x + 0.7152 * p.y + 0.0722 * p.z);
     return static_cast<float>(0.5 / std::exp(sum / static_cast<double>(std::max<std::size_t>(1, picture.pixels.size()))));
-}
-
-Planes glassMethod(const Options& options) {
-    const Method* row = findMethod(options.method);
-    if (row == nullptr || row->family != Family::glass)
-        throw Error(ErrorCode::badOption, {.what = "there is no glass method \"" + options.method + "\"", .remedy = "one of " + methodNames(Family::glass)});
-    Planes method;
-    for (const std::string& given : options.methodOptions.givenFor(*row)) {
-        const std::size_t equals = given.find('=');
-        Planes::visitOptions(method, [&](std::string_view name, float& value) {
-            if (name == std::string_view(given).substr(0, equals)) value = std::stof(given.substr(equals + 1));
-        });
-    }
-    return method;
 }
 
 Image renderVoxels(Queue& queue, const Options& options, const Mesh& mesh, const Camera& camera) {
@@ -78,12 +58,7 @@ Image renderVoxels(Queue& queue, const Options& options, const Mesh& mesh, const
 
 int runRender(const Options& options) {
     ProgressBar bar;
-    Scene scene = bar.wait("reading " + options.scene, [&] {
-        Scene read = loadScene(options.scene);
-        if (read.mesh.normals.empty()) read.mesh = withSmoothNormals(read.mesh, options.crease);
-        return read;
-    });
-    for (const std::string& warning : scene.warnings) note("vitrail: " + warning);
+    Scene scene = bar.wait("reading " + options.scene, [&] { return loadLit(options.scene, options.crease); });
     if (!options.environment.empty()) {
         scene.environment.map = loadPicture(options.environment);
         scene.light = sunOf(scene.environment);
@@ -109,8 +84,8 @@ int runRender(const Options& options) {
         if (options.effect == "voxels") return renderVoxels(queue, options, scene.mesh, camera);
         const Ground ground{.visible = !options.noGround};
         if (options.effect == "shadow")
-            return shade(queue, scene, camera, Shadow{.method = glassMethod(options), .ground = ground, .samples = options.samples});
-        return shade(queue, scene, camera, Glass{.method = glassMethod(options), .ground = ground, .samples = options.samples});
+            return shade(queue, scene, camera, Shadow{.method = glassMethod(options.method, options.methodOptions), .ground = ground, .samples = options.samples});
+        return shade(queue, scene, camera, Glass{.method = glassMethod(options.method, options.methodOptions), .ground = ground, .samples = options.samples});
     };
     const Image image = render();
     const Picture& picture = image.picture();

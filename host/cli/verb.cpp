@@ -130,10 +130,41 @@ std::string methodNames(Family family) {
 
 std::string voxelizerNames() { return methodNames(Family::surfaceVoxels) + ", " + methodNames(Family::solidVoxels); }
 
+void parseSize(const std::string& text, std::uint32_t& width, std::uint32_t& height) {
+    char rest = 0;
+    if (std::sscanf(text.c_str(), "%ux%u%c", &width, &height, &rest) != 2 || width == 0 || height == 0 || width > 8192 || height > 8192)
+        throw Error(ErrorCode::badOption, {.what = "--size " + text + " is no picture size", .remedy = "WIDTHxHEIGHT in pixels, 1 to 8192 each, such as 768x768"});
+}
+
+Planes glassMethod(const std::string& name, const MethodOptions& options) {
+    const Method* row = findMethod(name);
+    if (row == nullptr || row->family != Family::glass)
+        throw Error(ErrorCode::badOption, {.what = "there is no glass method \"" + name + "\"", .remedy = "one of " + methodNames(Family::glass)});
+    Planes method;
+    for (const std::string& given : options.givenFor(*row)) {
+        const std::size_t equals = given.find('=');
+        Planes::visitOptions(method, [&](std::string_view option, float& value) {
+            if (option == std::string_view(given).substr(0, equals)) value = std::stof(given.substr(equals + 1));
+        });
+    }
+    return method;
+}
+
 Mesh loadMesh(const std::string& file) {
     Mesh mesh = load(file);
     for (const std::string& repair : mesh.repairs) note(file + ": " + repair);
     return mesh;
+}
+
+Scene loadLit(const std::string& file, float creaseDegrees) {
+    Scene scene = loadScene(file);
+    for (const std::string& warning : scene.warnings) note("vitrail: " + warning);
+    if (inspect(scene.mesh).inverted()) {
+        reverseWinding(scene.mesh);
+        note("vitrail: " + file + " is inside out; its triangles were turned around");
+    }
+    if (scene.mesh.normals.empty()) scene.mesh = withSmoothNormals(scene.mesh, creaseDegrees);
+    return scene;
 }
 
 void print(const Json& document) {

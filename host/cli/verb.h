@@ -11,7 +11,9 @@
 
 #include <vitrail/core/queue.h>
 #include <vitrail/grid/grid.h>
+#include <vitrail/light/glass.h>
 #include <vitrail/scene/mesh.h>
+#include <vitrail/scene/scene.h>
 #include <vitrail/voxelize/voxelize.h>
 
 #include "cli/record.h"
@@ -25,6 +27,7 @@ void addShape(CLI::App& app, Run& run);
 void addVoxelize(CLI::App& app, Run& run);
 void addCompare(CLI::App& app, Run& run);
 void addRender(CLI::App& app, Run& run);
+void addJudge(CLI::App& app, Run& run);
 
 /// Milliseconds since the program started.
 double sinceStartMs();
@@ -72,8 +75,17 @@ private:
 std::string methodNames(Family family);
 std::string voxelizerNames();
 
+/// "512x512". Throws Error (badOption).
+void parseSize(const std::string& text, std::uint32_t& width, std::uint32_t& height);
+
+/// The glass method called `name` with the options given. Throws Error (badOption) that lists what there is.
+Planes glassMethod(const std::string& name, const MethodOptions& options);
+
 /// Reads a mesh, and says on standard error what its reader mended.
 Mesh loadMesh(const std::string& file);
+
+/// Reads a scene to be lit: with normals, and turned around where it is closed but inside out.
+Scene loadLit(const std::string& file, float creaseDegrees);
 
 void print(const Json& document);       ///< on standard output
 void note(const std::string& line);     ///< on standard error, above the progress bar

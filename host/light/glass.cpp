@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include <vitrail/layout/shading.h>
 #include <vitrail/methods.h>
@@ -63,17 +64,67 @@ vitrail_LightDesc describeLight(const Scene& scene, const Ground& ground, const 
     return out;
 }
 
-template <class Effect>
-Image shadeVoxels(Queue& queue, const Scene& scene, const Camera& camera, const Effect& effect, const char* name, const char* kernel) {
-    detail::checkOptions(effect.method);
-    detail::checkSamples(name, effect.samples);
+/// What rays go through: the scene's voxels, and what its camera sees first.
+struct Volume {
+    Grid grid;
+    DeviceMesh mesh;
+    SurfaceVoxels voxels;
+    GBuffer gbuffer;
+    Buffer<vitrail_MaterialDesc> materials;
+    std::int32_t bound;  ///< a walk crosses at most this many cells on four straight ways through the grid; a march past it is ended and counted
+};
+
+Volume volumeOf(detail::Call& call, const Scene& scene, const Camera& camera, const Planes& method) {
+    Queue& queue = call.queue();
+    const Grid grid = Grid::fit(scene.mesh.bounds(), static_cast<std::uint32_t>(method.resolution));
+    DeviceMesh mesh(queue, scene.mesh.view());
+    SurfaceVoxels voxels = voxelizeSurface(queue, mesh, grid);
+    GBuffer gbuffer = rasterize(queue, mesh, camera);
+    std::vector<vitrail_MaterialDesc> table;
+    for (const Material& m : scene.materials) table.push_back({with(m.baseColour, m.transmission), with(m.absorption(), m.indexOfRefraction)});
+    Buffer<vitrail_MaterialDesc> materials = queue.workspace().take<vitrail_MaterialDesc>(table.size(), "materials");
+    call.upload(materials, table.data(), table.size());
+    const Uint3 size = grid.size();
+    return {grid, std::move(mesh), std::move(voxels), std::move(gbuffer), std::move(materials), static_cast<std::int32_t>(4 * (size.x + size.y + size.z))};
+}
+
+void check(const Scene& scene, const Planes& method) {
+    detail::checkOptions(method);
     if (scene.materials.empty()) throw Error(ErrorCode::badInput, {"the scene has no materials", "", "", "one material, such as defaultGlass(bounds)"});
     for (const std::uint32_t material : scene.mesh.materials)
         if (material >= scene.materials.size())
             throw Error(ErrorCode::badInput, {"a triangle names material " + std::to_string(material) + " of " + std::to_string(scene.materials.size()), "", "",
                                               "materials that index the scene's list"});
-    const Bounds bounds = scene.mesh.bounds();
-    const Grid grid = Grid::fit(bounds, static_cast<std::uint32_t>(effect.method.resolution));
+}
+
+/// In bands of samples, so that the callback is asked while rays run; `head` are the arguments before the mesh, `tail` those after the bound.
+template <class... Head, class... Tail>
+void launchRays(detail::Call& call, const char* kernel, const Volume& volume, std::uint64_t samples, const std::tuple<Head...>& head,
+                const std::tuple<Tail...>& tail) {
+    constexpr std::uint64_t kBand = 1u << 18;
+    const Voxels& voxels = volume.voxels.voxels;
+    for (std::uint64_t first = 0; first < samples; first += kBand) {
+        call.step("rays", 0.5 + 0.5 * static_cast<double>(first) / static_cast<double>(samples));
+        const std::uint64_t count = std::min(kBand, samples - first);
+        std::apply(
+            [&](const auto&... before) {
+                std::apply(
+                    [&](const auto&... after) {
+                        call.launchRange(detail::Program{"light", ""}, kernel, count, volume.grid.desc(), volume.gbuffer.camera, before...,
+                                         volume.mesh.positions(), volume.mesh.indices(), volume.mesh.normals(), volume.mesh.materials(),
+                                         volume.gbuffer.triangle, voxels.bits(), voxels.bricks(), voxels.rank(), voxels.mip(), volume.voxels.surface,
+                                         voxels.materialBuffer(), volume.materials, after..., first);
+                    },
+                    tail);
+            },
+            head);
+    }
+}
+
+template <class Effect>
+Image shadeVoxels(Queue& queue, const Scene& scene, const Camera& camera, const Effect& effect, const char* name, const char* kernel) {
+    check(scene, effect.method);
+    detail::checkSamples(name, effect.samples);
     Camera sampled = camera;
     sampled.width *= effect.samples;
     sampled.height *= effect.samples;
@@ -82,16 +133,8 @@ Image shadeVoxels(Queue& queue, const Scene& scene, const Camera& camera, const 
     Workspace& workspace = queue.workspace();
     const std::uint64_t samples = static_cast<std::uint64_t>(sampled.width) * sampled.height;
     Buffer<float> seen = workspace.take<float>(4 * samples, "samples of a picture");
-    const DeviceMesh mesh(queue, scene.mesh.view());
-    const SurfaceVoxels voxels = voxelizeSurface(queue, mesh, grid);
-    const GBuffer gbuffer = rasterize(queue, mesh, sampled);
-
-    std::vector<vitrail_MaterialDesc> table;
-    for (const Material& m : scene.materials)
-        table.push_back({with(m.baseColour, m.transmission), with(m.absorption(), m.indexOfRefraction)});
-    Buffer<vitrail_MaterialDesc> materials = workspace.take<vitrail_MaterialDesc>(table.size(), "materials");
-    call.upload(materials, table.data(), table.size());
-    const vitrail_LightDesc light = describeLight(scene, effect.ground, bounds);
+    const Volume volume = volumeOf(call, scene, sampled, effect.method);
+    const vitrail_LightDesc light = describeLight(scene, effect.ground, scene.mesh.bounds());
     Buffer<float> map;
     if (std::is_same_v<Effect, Glass> && !scene.environment.map.empty()) {
         map = workspace.take<float>(4 * scene.environment.map.pixels.size(), "environment map");
@@ -99,32 +142,17 @@ Image shadeVoxels(Queue& queue, const Scene& scene, const Camera& camera, const 
     }
     Buffer<std::uint32_t> status = workspace.take<std::uint32_t>(detail::kLightStatusWords, "counts");
     call.fill(status, 0);
-    // A walk crosses at most this many cells on four straight ways through the grid; a march past it is ended and counted.
-    const Uint3 size = grid.size();
-    const auto bound = static_cast<std::int32_t>(4 * (size.x + size.y + size.z));
-    // In bands of samples, so that the callback is asked while rays run.
-    const detail::Program program{"light", ""};
-    constexpr std::uint64_t kBand = 1u << 18;
-    for (std::uint64_t first = 0; first < samples; first += kBand) {
-        call.step("rays", 0.5 + 0.5 * static_cast<double>(first) / static_cast<double>(samples));
-        const std::uint64_t count = std::min(kBand, samples - first);
-        const auto launch = [&](const auto&... tail) {
-            call.launchRange(program, kernel, count, grid.desc(), gbuffer.camera, light, mesh.positions(), mesh.indices(), mesh.normals(),
-                             mesh.materials(), gbuffer.triangle, voxels.voxels.bits(), voxels.voxels.bricks(), voxels.voxels.rank(), voxels.voxels.mip(), voxels.surface,
-                             voxels.voxels.materialBuffer(), materials, tail...);
-        };
-        if constexpr (std::is_same_v<Effect, Glass>)
-            launch(map, bound, status, seen, first);
-        else
-            launch(bound, seen, first);
-    }
+    if constexpr (std::is_same_v<Effect, Glass>)
+        launchRays(call, kernel, volume, samples, std::tie(light), std::tie(map, volume.bound, status, seen));
+    else
+        launchRays(call, kernel, volume, samples, std::tie(light), std::tie(volume.bound, seen));
     auto image = detail::resolveSamples(call, seen, camera.width, camera.height, effect.samples);
     image->status = std::move(status);
     image->counted.effect = name;
     image->counted.method = effect.method.name;
-    image->counted.grid = size;
-    image->counted.triangles = mesh.triangleCount();
-    image->counted.occupied = voxels.voxels.occupied();
+    image->counted.grid = volume.grid.size();
+    image->counted.triangles = volume.mesh.triangleCount();
+    image->counted.occupied = volume.voxels.voxels.occupied();
     return Image(std::move(image));
 }
 
@@ -136,6 +164,33 @@ Image shade(Queue& queue, const Scene& scene, const Camera& camera, const Glass&
 
 Image shade(Queue& queue, const Scene& scene, const Camera& camera, const Shadow& effect) {
     return shadeVoxels(queue, scene, camera, effect, "shadow", "glass_shadow");
+}
+
+GlassRays glassRays(Queue& queue, const Scene& scene, const Camera& camera, const Planes& method) {
+    check(scene, method);
+    GlassRays out;
+    std::shared_ptr<detail::Record> record;
+    {
+        detail::Call call(queue, "tracing glass of " + std::to_string(scene.mesh.triangleCount()) + " triangles");
+        const std::uint64_t pixels = static_cast<std::uint64_t>(camera.width) * camera.height;
+        Buffer<vitrail_RayEnd> ends = queue.workspace().take<vitrail_RayEnd>(pixels, "ends of rays");
+        const Volume volume = volumeOf(call, scene, camera, method);
+        launchRays(call, "glass_ends", volume, pixels, std::tie(), std::tie(volume.bound, ends));
+        out.ends = ends.read(queue);
+        out.report.effect = "rays";
+        out.report.method = Planes::name;
+        out.report.grid = volume.grid.size();
+        out.report.triangles = volume.mesh.triangleCount();
+        out.report.occupied = volume.voxels.voxels.occupied();
+        record = call.record();
+    }
+    static_cast<CallReport&>(out.report) = detail::resolve(*record);
+    out.report.rays = out.ends.size();
+    for (const vitrail_RayEnd& end : out.ends) {
+        out.report.lostRays += end.fate == VITRAIL_RAY_LOST;
+        out.report.boundedRays += end.fate == VITRAIL_RAY_BOUNDED;
+    }
+    return out;
 }
 
 DirectionalLight sunOf(const Environment& environment) {

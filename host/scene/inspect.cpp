@@ -190,5 +190,9 @@ std::string MeshReport::summary() const {
     return text;
 }
 
+void reverseWinding(Mesh& mesh) {
+    for (std::size_t t = 0; t < mesh.triangleCount(); ++t) std::swap(mesh.indices[3 * t + 1], mesh.indices[3 * t + 2]);
+}
+
 }  // namespace v0
 }  // namespace vitrail

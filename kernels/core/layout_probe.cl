@@ -2,6 +2,7 @@
 // tests/core/layout_test.cpp lists them.
 #include "layout/camera.h"
 #include "layout/grid.h"
+#include "layout/ray_end.h"
 #include "layout/shading.h"
 #include "layout/surface_voxel.h"
 #pragma OPENCL FP_CONTRACT OFF
@@ -59,4 +60,10 @@ kernel void layout_probe(global uint* out) {
     OFFSET(vitrail_SurfaceVoxel, centroid);
     OFFSET(vitrail_SurfaceVoxel, gradient0);
     OFFSET(vitrail_SurfaceVoxel, gradient1);
+
+    SIZE(vitrail_RayEnd);
+    OFFSET(vitrail_RayEnd, direction);
+    OFFSET(vitrail_RayEnd, fate);
+    OFFSET(vitrail_RayEnd, transmittance);
+    OFFSET(vitrail_RayEnd, events);
 }

@@ -2,6 +2,7 @@
 // count: outside only planes that face the ray are entered, inside only planes that face away are left, so that neighbouring voxels that
 // hold the same surface never count it twice and a plane may be met a little outside its own cell.
 #include "layout/grid.h"
+#include "layout/ray_end.h"
 #include "light/surroundings.cl"
 #include "lib/camera.cl"
 #include "lib/dda.cl"
@@ -10,8 +11,6 @@
 #include "lib/surface.cl"
 #pragma OPENCL FP_CONTRACT OFF
 
-#define MOST_EVENTS 16
-#define GRAZING 1e-3f      // least cosine between a ray and a boundary
 #define REACH 0.5f         // cells past its own by which a plane still counts
 
 #define STATUS_LOST 0      // left the grid inside glass
@@ -33,7 +32,7 @@ typedef struct {
 // A surface that a march met.
 typedef struct {
     float t;
-    float3 position, normal;  // voxel coordinates; unit shading normal, outward
+    float3 position, normal, flat;  // voxel coordinates; unit normals, outward: for shading, and of the plane
     uint material;
 } Crossing;
 
@@ -63,6 +62,7 @@ static inline bool glass_next(const Volume* volume, float3 origin, float3 direct
                         hit->t = t;
                         hit->position = origin + direction * t;
                         hit->normal = surface_normal_at(s, normal, hit->position - centroid);
+                        hit->flat = normal;
                         hit->material = material;
                     }
                 }
@@ -74,13 +74,19 @@ static inline bool glass_next(const Volume* volume, float3 origin, float3 direct
     return found;
 }
 
-// The side of a shading normal made to agree with which side the ray comes from; `n` against d afterwards. A normal that contradicts is
-// taken as grazing (refraction-notes.md, "Contradictions").
-static inline float3 glass_facing(float3 d, float3 n) {
-    const float c = dot(d, n);
-    if (c < -GRAZING) return n;
-    const float3 m = n - d * (c + GRAZING);
-    return m / sqrt(dot(m, m));
+// vitrail_facing and vitrail_cross of layout/ray_end.h.
+static inline float3 glass_facing(float3 d, float3 normal, float3 flat) {
+    float out[3];
+    const float from[3] = {d.x, d.y, d.z}, s[3] = {normal.x, normal.y, normal.z}, g[3] = {flat.x, flat.y, flat.z};
+    vitrail_facing(from, s, g, out);
+    return (float3)(out[0], out[1], out[2]);
+}
+static inline bool glass_cross(float3* d, float3 facing, float3 flat, float ratio) {
+    float out[3];
+    const float from[3] = {d->x, d->y, d->z}, n[3] = {facing.x, facing.y, facing.z}, g[3] = {flat.x, flat.y, flat.z};
+    const bool through = vitrail_cross(from, n, g, ratio, out) != 0;
+    *d = (float3)(out[0], out[1], out[2]);
+    return through;
 }
 
 static inline float3 to_voxel(const vitrail_GridDesc* grid, float3 p) { return (p - xyz(grid->origin)) / grid->extent.x; }
@@ -93,13 +99,13 @@ static float3 glass_transmittance(const Volume* volume, float3 p, float3 toLight
     float3 through = (float3)(1.0f);
     float t = 0.02f;
     int steps = 0;
-    for (int event = 0; event < MOST_EVENTS; ++event) {
+    for (int event = 0; event < VITRAIL_MOST_EVENTS; ++event) {
         Crossing hit;
         if (!glass_next(volume, p, toLight, inside, t, &steps, &hit)) return through;
         const vitrail_MaterialDesc m = volume->materials[inside ? material : hit.material];
         if (volume->materials[hit.material].colour.w <= 0.5f) return (float3)(0.0f);
         if (inside) through *= glass_absorb(&m, (hit.t - t) * volume->grid->extent.x);
-        through *= 1.0f - fresnel_reflectance(fmax(fabs(dot(toLight, hit.normal)), GRAZING), 1.0f / m.absorption.w);
+        through *= 1.0f - fresnel_reflectance(fmax(fabs(dot(toLight, hit.normal)), VITRAIL_GRAZING), 1.0f / m.absorption.w);
         material = hit.material;
         inside = !inside;
         t = hit.t;
@@ -174,44 +180,40 @@ static inline bool glass_first_hit(const vitrail_GridDesc* grid, global const fl
     return true;
 }
 
-// Follows a ray that stands on a first hit through the glass to its two ends.
-static void glass_trace(const Volume* volume, float3 position, float3 normal, float3 flat, uint material, float3 direction, End ends[2],
-                        global uint* status) {
+// Follows a ray that stands on a first hit through the glass to its two ends; `mirror`: the first surface also shows its mirror image, and
+// what goes through loses as much. Later surfaces do not (one ray a sample).
+static void glass_trace(const Volume* volume, float3 position, float3 normal, float3 flat, uint material, float3 direction, bool mirror,
+                        End ends[2], uint* fate, uint* events) {
     const vitrail_MaterialDesc first = volume->materials[material];
+    *events = 0u;
     if (first.colour.w <= 0.5f) {
         const End end = {xyz(first.colour), position, dot(direction, normal) > 0.0f ? -normal : normal, true};
         ends[0] = end;
+        *fate = VITRAIL_RAY_OPAQUE;
         return;
     }
     float3 through = xyz(first.colour);
-    // The first surface also shows its mirror image, weighted by Fresnel; later ones do not (one ray a sample).
     bool inside = dot(direction, flat) > 0.0f;
-    float3 n = glass_facing(direction, inside ? -normal : normal);
+    float3 n = glass_facing(direction, normal, flat);
     float ratio = inside ? first.absorption.w : 1.0f / first.absorption.w;
-    if (!inside) {
+    if (mirror && !inside) {
         const float reflected = fresnel_reflectance(-dot(direction, n), ratio);
-        const End mirror = {(float3)(reflected), position, fresnel_reflect(direction, n), false};
-        ends[1] = mirror;
+        const End image = {(float3)(reflected), position, fresnel_reflect(direction, n), false};
+        ends[1] = image;
         through *= 1.0f - reflected;
     }
     int steps = 0;
     uint current = material;
-    for (int event = 1;; ++event) {
-        // At a boundary, n against the ray.
-        float3 next;
-        if (fresnel_refract(direction, n, ratio, &next)) {
-            inside = !inside;
-            direction = next;
-        } else {
-            direction = fresnel_reflect(direction, n);
-        }
-        if (event >= MOST_EVENTS || steps >= volume->bound) {
-            atomic_inc(status + STATUS_BOUNDED);
-            break;
-        }
+    *fate = VITRAIL_RAY_LEFT;
+    for (;;) {
+        if (glass_cross(&direction, n, flat, ratio)) inside = !inside;
+        ++*events;
         Crossing hit;
         if (!glass_next(volume, position, direction, inside, 1e-3f, &steps, &hit)) {
-            if (inside) atomic_inc(status + STATUS_LOST);
+            if (steps >= volume->bound)
+                *fate = VITRAIL_RAY_BOUNDED;
+            else if (inside)
+                *fate = VITRAIL_RAY_LOST;
             break;
         }
         if (!inside) current = hit.material;
@@ -220,11 +222,17 @@ static void glass_trace(const Volume* volume, float3 position, float3 normal, fl
         if (met.colour.w <= 0.5f) {
             const End end = {through * xyz(met.colour), hit.position, dot(direction, hit.normal) > 0.0f ? -hit.normal : hit.normal, true};
             ends[0] = end;
+            *fate = VITRAIL_RAY_OPAQUE;
             return;
+        }
+        if (*events == VITRAIL_MOST_EVENTS) {
+            *fate = VITRAIL_RAY_BOUNDED;
+            break;
         }
         if (!inside) through *= xyz(m.colour);
         position = hit.position;
-        n = glass_facing(direction, inside ? -hit.normal : hit.normal);
+        flat = hit.flat;
+        n = glass_facing(direction, hit.normal, flat);
         ratio = inside ? m.absorption.w : 1.0f / m.absorption.w;
     }
     const End end = {through, position, direction, false};
@@ -251,13 +259,40 @@ kernel void glass_shade(const vitrail_GridDesc grid, const vitrail_CameraDesc ca
         ends[0].direction = d;
         ends[0].diffuse = false;
         ends[1].weight = (float3)(0.0f);
+        uint fate = VITRAIL_RAY_MISSED, events = 0u;
         if (triangle != 0xffffffffu &&
             glass_first_hit(&grid, positions, indices, normals, triangle, o, d, &position, &normal, &flat))
-            glass_trace(&volume, position, normal, flat, triangleMaterial ? triangleMaterial[triangle] : 0u, d, ends, status);
+            glass_trace(&volume, position, normal, flat, triangleMaterial ? triangleMaterial[triangle] : 0u, d, true, ends, &fate, &events);
+        if (fate == VITRAIL_RAY_LOST) atomic_inc(status + STATUS_LOST);
+        if (fate == VITRAIL_RAY_BOUNDED) atomic_inc(status + STATUS_BOUNDED);
         float3 seen = (float3)(0.0f);
         for (int k = 0; k < 2; ++k)
             if (ends[k].weight.x + ends[k].weight.y + ends[k].weight.z > 0.0f) seen += glass_light(&volume, &light, map, ends[k], width);
         samples[pixel] = (float4)(seen, 1.0f);
+    }
+}
+
+// Where each ray ends, without Fresnel's reflection: what is judged.
+kernel void glass_ends(const vitrail_GridDesc grid, const vitrail_CameraDesc camera, global const float* positions, global const uint* indices,
+                       global const float* normals, global const uint* triangleMaterial, global const uint* nearest, global const uint* words,
+                       global const uint2* bricks, global const uint* rank, global const uchar* mip, global const vitrail_SurfaceVoxel* surface,
+                       global const uint* voxelMaterial, global const vitrail_MaterialDesc* materials, int bound,
+                       global vitrail_RayEnd* rays, ulong first, ulong count, uint perItem) {
+    const Volume volume = {&grid, words, bricks, rank, mip, surface, voxelMaterial, materials, bound};
+    FOR_RANGE(i, count, perItem) {
+        const size_t pixel = first + i;
+        float3 o, d, position, normal, flat;
+        camera_ray(&camera, (uint)(pixel % camera.width), (uint)(pixel / camera.width), &o, &d);
+        const uint triangle = nearest[pixel];
+        End ends[2];
+        ends[0].weight = (float3)(1.0f);
+        ends[0].direction = d;
+        uint fate = VITRAIL_RAY_MISSED, events = 0u;
+        if (triangle != 0xffffffffu && glass_first_hit(&grid, positions, indices, normals, triangle, o, d, &position, &normal, &flat))
+            glass_trace(&volume, position, normal, flat, triangleMaterial ? triangleMaterial[triangle] : 0u, d, false, ends, &fate, &events);
+        const End end = ends[0];
+        const vitrail_RayEnd out = {{end.direction.x, end.direction.y, end.direction.z}, fate, {end.weight.x, end.weight.y, end.weight.z}, events};
+        rays[pixel] = out;
     }
 }
 

@@ -324,6 +324,19 @@ TEST_F(Program, WrittenVoxelsScoreAsTheirMethod) {
     }
 }
 
+TEST_F(Program, JudgePrintsRates) {
+    makeMesh("sphere");
+    const json judged = document(run("judge mesh.ply --ior 1.14 --resolution 64 --size 64x64 --views 2 --faults faults.png --json"), "vitrail.judge.1");
+    EXPECT_EQ(judged["views"].size(), 2u);
+    EXPECT_GT(judged["correct"], 0.98);
+    EXPECT_GT(judged["stableCorrect"], 0.99);
+    EXPECT_GT(judged["views"][0]["pixels"], 500);
+    EXPECT_TRUE(fs::exists(folder_ / "faults.png"));
+    EXPECT_EQ(run("judge mesh.ply --method none").code, 2);
+    const Result table = run("judge mesh.ply --ior 1.14 --resolution 64 --size 32x32 --views 1");
+    EXPECT_NE(table.out.find("mean: correct"), std::string::npos) << table.out << table.err;
+}
+
 TEST_F(Program, InterruptEndsWithoutOutput) {
     makeMesh();
     // Once, to the program alone (`--foreground`): a second interrupt is the user's way to end it at once. Whether it comes while a driver

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <vitrail/layout/camera.h>
 #include <vitrail/layout/grid.h>
+#include <vitrail/layout/ray_end.h>
 #include <vitrail/layout/shading.h>
 #include <vitrail/layout/surface_voxel.h>
 
@@ -73,6 +74,12 @@ Entries hostLayout() {
     OFFSET(vitrail_SurfaceVoxel, centroid);
     OFFSET(vitrail_SurfaceVoxel, gradient0);
     OFFSET(vitrail_SurfaceVoxel, gradient1);
+
+    SIZE(vitrail_RayEnd);
+    OFFSET(vitrail_RayEnd, direction);
+    OFFSET(vitrail_RayEnd, fate);
+    OFFSET(vitrail_RayEnd, transmittance);
+    OFFSET(vitrail_RayEnd, events);
     return entries;
 }
 

@@ -67,6 +67,8 @@ TEST(Inspect, Inverted) {
     EXPECT_TRUE(report.closed());
     EXPECT_TRUE(report.inverted());
     EXPECT_EQ(report.summary(), "closed but inverted, 1 component");
+    reverseWinding(mesh);
+    EXPECT_FALSE(inspect(mesh).inverted());
 }
 
 TEST(Inspect, OneTriangleFlipped) {

@@ -4,8 +4,10 @@
 // crossing, Beer-Lambert inside; opaque materials end a ray; what leaves sees the environment and a ground that takes the transparent shadow.
 #pragma once
 #include <string_view>
+#include <vector>
 
 #include <vitrail/core/queue.h>
+#include <vitrail/layout/ray_end.h>
 #include <vitrail/light/image.h>
 #include <vitrail/scene/scene.h>
 
@@ -50,6 +52,14 @@ struct Shadow {
 /// badOption, outOfMemory).
 Image shade(Queue& queue, const Scene& scene, const Camera& camera, const Glass& effect);
 Image shade(Queue& queue, const Scene& scene, const Camera& camera, const Shadow& effect);
+
+/// Where the ray through each pixel's centre ends, without Fresnel's reflection, row 0 at the top: what metrics/rays.h judges.
+struct GlassRays {
+    std::vector<vitrail_RayEnd> ends;
+    ImageReport report;
+};
+/// Limits, memory and errors as shade(), with 32 bytes a pixel. Waits.
+GlassRays glassRays(Queue& queue, const Scene& scene, const Camera& camera, const Planes& method);
 
 /// The brightest part of an environment map as a directional light: direction of its peak after a blur of some degrees and the irradiance of
 /// what lies within 10 degrees of it. Of an environment without a map: the default light.

@@ -95,6 +95,8 @@ void check(const MeshView& mesh);
 
 /// Counts what the mesh is. Time and memory about linear in triangles.
 MeshReport inspect(const MeshView& mesh);
+/// Turns every triangle around: what is closed but inverted faces outward then. Normals stay.
+void reverseWinding(Mesh& mesh);
 
 /// Angle-weighted vertex normals (Thuermer & Wuethrich 1998) of vertices merged at bit-equal positions; edges whose faces
 /// meet at more than `creaseDegrees` (0 to 180) keep a crease, for which vertices are split in the result.

@@ -1,0 +1,177 @@
+#include <vitrail/reference/glass.h>
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+#include <thread>
+#include <type_traits>
+
+#include <vitrail/core/error.h>
+
+namespace vitrail {
+inline namespace v0 {
+namespace reference {
+
+namespace {
+
+constexpr std::uint32_t kNone = 0xffffffffu;
+
+Double3 vertex(const Mesh& mesh, std::uint32_t triangle, int corner) { return Double3(mesh.positions[mesh.indices[3 * triangle + static_cast<unsigned>(corner)]]); }
+
+class Triangles {
+public:
+    explicit Triangles(const Mesh& mesh) : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_.get())) {
+        const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+        auto* corners = static_cast<float*>(
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.positions.size()));
+        for (const Float3& p : mesh.positions)
+            for (int axis = 0; axis < 3; ++axis) *corners++ = p[axis];
+        auto* indices = static_cast<unsigned*>(
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), mesh.triangleCount()));
+        std::copy(mesh.indices.begin(), mesh.indices.end(), indices);
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometry(scene_.get(), geometry);
+        rtcReleaseGeometry(geometry);
+        rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
+        rtcCommitScene(scene_.get());
+    }
+
+    /// The nearest triangle along the ray past `least`, or kNone.
+    std::uint32_t next(const Double3& origin, const Double3& direction, double least) const {
+        const Float3 o(origin), d(direction);
+        RTCRayHit ray{};
+        ray.ray = {o.x, o.y, o.z, static_cast<float>(least), d.x, d.y, d.z, 0, std::numeric_limits<float>::infinity(), ~0u, 0, 0};
+        ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+#if RTC_VERSION_MAJOR >= 4
+        rtcIntersect1(scene_.get(), &ray);
+#else
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        rtcIntersect1(scene_.get(), &context, &ray);
+#endif
+        return ray.hit.geomID == RTC_INVALID_GEOMETRY_ID ? kNone : ray.hit.primID;
+    }
+
+private:
+    struct Release {
+        void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+        void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+    };
+    std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release> device_;
+    std::unique_ptr<std::remove_pointer_t<RTCScene>, Release> scene_;
+};
+
+class Tracer {
+public:
+    explicit Tracer(const Scene& scene) : scene_(scene), triangles_(scene.mesh) {
+        const Bounds bounds = scene.mesh.bounds();
+        // Floats of the ray's origin are off by 2^-24 of its coordinates; a crossing nearer than this is the one that it stands on.
+        least_ = 1e-6 * std::max(glm::length(Double3(bounds.high) - Double3(bounds.low)),
+                                 std::max(glm::length(Double3(bounds.low)), glm::length(Double3(bounds.high))));
+    }
+
+    vitrail_RayEnd trace(Double3 origin, Double3 direction) const {
+        vitrail_RayEnd end{};
+        Double3 through(1.0);
+        double least = 0;
+        end.fate = VITRAIL_RAY_MISSED;
+        for (;;) {
+            const std::uint32_t t = triangles_.next(origin, direction, least);
+            if (t == kNone) break;
+            const Material& material = scene_.materials[scene_.mesh.materials.empty() ? 0 : scene_.mesh.materials[t]];
+            const Double3 a = vertex(scene_.mesh, t, 0), u = vertex(scene_.mesh, t, 1) - a, w = vertex(scene_.mesh, t, 2) - a;
+            const Double3 across = glm::cross(u, w), geometric = glm::normalize(across);
+            const double slope = glm::dot(direction, geometric);
+            // Edge-on to the last bit: where Embree met it is as good as any point.
+            const double length = slope != 0 ? std::max(glm::dot(a - origin, geometric) / slope, 0.0) : 0.0;
+            const Double3 position = origin + direction * length;
+            const bool inside = slope > 0;
+            if (inside) through *= glm::exp(-Double3(material.absorption()) * length);
+            if (material.transmission <= 0.5f) {
+                through *= Double3(material.baseColour);
+                end.fate = VITRAIL_RAY_OPAQUE;
+                break;
+            }
+            if (end.events == VITRAIL_MOST_EVENTS) {
+                end.fate = VITRAIL_RAY_BOUNDED;
+                break;
+            }
+            end.fate = VITRAIL_RAY_LEFT;
+            if (!inside) through *= Double3(material.baseColour);
+            const Double3 shading = normalAt(t, position - a, u, w, across, geometric);
+            double facing[3], out[3];
+            vitrail_facing(&direction.x, &shading.x, &geometric.x, facing);
+            const double index = material.indexOfRefraction;
+            vitrail_cross(&direction.x, facing, &geometric.x, inside ? index : 1 / index, out);
+            direction = {out[0], out[1], out[2]};
+            origin = position;
+            least = least_;
+            ++end.events;
+        }
+        for (int k = 0; k < 3; ++k) {
+            end.direction[k] = static_cast<float>(direction[k]);
+            end.transmittance[k] = static_cast<float>(through[k]);
+        }
+        return end;
+    }
+
+private:
+    Double3 normalAt(std::uint32_t t, const Double3& r, const Double3& u, const Double3& w, const Double3& across, const Double3& geometric) const {
+        const std::vector<Float3>& normals = scene_.mesh.normals;
+        if (normals.empty()) return geometric;
+        const double square = glm::dot(across, across), b = std::clamp(glm::dot(glm::cross(r, w), across) / square, 0.0, 1.0),
+                     c = std::clamp(glm::dot(glm::cross(u, r), across) / square, 0.0, 1.0);
+        const auto at = [&](unsigned k) { return Double3(normals[scene_.mesh.indices[3 * t + k]]); };
+        const Double3 n = at(0) * (1 - b - c) + at(1) * b + at(2) * c;
+        const double length = glm::length(n);
+        return length > 0 ? n / length : geometric;
+    }
+
+    const Scene& scene_;
+    Triangles triangles_;
+    double least_;
+};
+
+}  // namespace
+
+std::vector<vitrail_RayEnd> glass(const Scene& scene, const Camera& camera, double shiftX, double shiftY) {
+    for (const std::uint32_t material : scene.mesh.materials)
+        if (material >= scene.materials.size())
+            throw Error(ErrorCode::badInput, {"a triangle names material " + std::to_string(material) + " of " + std::to_string(scene.materials.size()), "", "",
+                                              "materials that index the scene's list"});
+    const Tracer tracer(scene);
+    const Double3 eye(camera.eye), forward = glm::normalize(Double3(camera.target) - eye), right = glm::normalize(glm::cross(forward, Double3(camera.up))),
+                  up = glm::cross(right, forward);
+    const bool flat = camera.orthographicHeight > 0;
+    const double halfHeight = flat ? 0.5 * camera.orthographicHeight : std::tan(glm::radians(0.5 * camera.fieldOfViewDegrees)),
+                 halfWidth = halfHeight * camera.width / camera.height;
+    std::vector<vitrail_RayEnd> ends(std::size_t(camera.width) * camera.height);
+    std::atomic<std::uint32_t> nextRow = 0;
+    const auto rows = [&] {
+        for (std::uint32_t y = nextRow++; y < camera.height; y = nextRow++)
+            for (std::uint32_t x = 0; x < camera.width; ++x) {
+                const Double3 across = right * (((x + 0.5 + shiftX) / camera.width * 2 - 1) * halfWidth) +
+                                       up * ((1 - (y + 0.5 + shiftY) / camera.height * 2) * halfHeight);
+                ends[std::size_t(y) * camera.width + x] =
+                    flat ? tracer.trace(eye + across, forward) : tracer.trace(eye, glm::normalize(forward + across));
+            }
+    };
+    std::vector<std::jthread> threads;
+    for (unsigned i = 1; i < std::max(1u, std::thread::hardware_concurrency()); ++i) threads.emplace_back(rows);
+    rows();
+    threads.clear();
+    return ends;
+}
+
+}  // namespace reference
+}  // namespace v0
+}  // namespace vitrail

@@ -1,0 +1,70 @@
+// vitrail/layout/ray_end.h: what became of a camera ray, and how a ray crosses a boundary: one text for the device's methods, in floats, and
+// for the reference, in doubles.
+#ifndef VITRAIL_LAYOUT_RAY_END_H
+#define VITRAIL_LAYOUT_RAY_END_H
+#include "types.h"
+
+#define VITRAIL_RAY_MISSED 0u   // met nothing
+#define VITRAIL_RAY_LEFT 1u     // went through glass and left
+#define VITRAIL_RAY_OPAQUE 2u   // ended on an opaque surface
+#define VITRAIL_RAY_BOUNDED 3u  // held inside for VITRAIL_MOST_EVENTS events, or by a march's bound of steps
+#define VITRAIL_RAY_LOST 4u     // left the grid inside glass
+
+#define VITRAIL_MOST_EVENTS 16  // refractions and reflections of a ray
+
+typedef struct vitrail_RayEnd {
+    float direction[3];  // unit, world; of the last stretch
+    vitrail_uint fate;   // VITRAIL_RAY_*
+    float transmittance[3];  // linear RGB: Beer-Lambert and the surfaces' colours, without Fresnel
+    vitrail_uint events;
+} vitrail_RayEnd;
+VITRAIL_CHECK_SIZE(vitrail_RayEnd, 32);
+
+#if defined(__OPENCL_VERSION__) || defined(__OPENCL_C_VERSION__)
+typedef float vitrail_optic;
+#define VITRAIL_SQRT sqrt
+#else
+#include <cmath>
+typedef double vitrail_optic;
+#define VITRAIL_SQRT std::sqrt
+#endif
+
+#define VITRAIL_GRAZING ((vitrail_optic)1e-3f)  // least cosine between a ray and a boundary
+
+static inline vitrail_optic vitrail_dot(const vitrail_optic a[3], const vitrail_optic b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+static inline void vitrail_normalize(vitrail_optic a[3]) {
+    const vitrail_optic length = VITRAIL_SQRT(vitrail_dot(a, a));
+    for (int i = 0; i < 3; ++i) a[i] /= length;
+}
+
+// The shading normal of the side that d comes from, which the geometric normal g decides. One that contradicts counts as grazing.
+// All unit; `facing` has dot(d, facing) < 0 after.
+static inline void vitrail_facing(const vitrail_optic d[3], const vitrail_optic s[3], const vitrail_optic g[3], vitrail_optic facing[3]) {
+    const vitrail_optic side = vitrail_dot(d, g) > 0 ? -1 : 1;
+    for (int i = 0; i < 3; ++i) facing[i] = side * s[i];
+    const vitrail_optic c = vitrail_dot(d, facing);
+    if (c < -VITRAIL_GRAZING) return;
+    for (int i = 0; i < 3; ++i) facing[i] -= d[i] * (c + VITRAIL_GRAZING);
+    vitrail_normalize(facing);
+}
+
+// Snell's law at a boundary: d goes on as `out`, refracted (1) or totally reflected (0). n is the normal of vitrail_facing, g the geometric
+// one, ratio the index before over the index behind. A direction on the wrong side of the geometric surface is bent to the right one.
+static inline int vitrail_cross(const vitrail_optic d[3], const vitrail_optic n[3], const vitrail_optic g[3], vitrail_optic ratio,
+                                vitrail_optic out[3]) {
+    const vitrail_optic cosine = -vitrail_dot(d, n), k = 1 - ratio * ratio * (1 - cosine * cosine), away = vitrail_dot(d, g) > 0 ? 1 : -1;
+    const int through = k >= 0;
+    const vitrail_optic along = through ? ratio * cosine - VITRAIL_SQRT(k) : 2 * cosine;
+    for (int i = 0; i < 3; ++i) out[i] = (through ? ratio : 1) * d[i] + along * n[i];
+    vitrail_normalize(out);
+    // Beyond the surface along d, or back from it.
+    const vitrail_optic side = through ? away : -away, depth = side * vitrail_dot(out, g);
+    if (depth < VITRAIL_GRAZING) {
+        for (int i = 0; i < 3; ++i) out[i] += side * g[i] * (VITRAIL_GRAZING - depth);
+        vitrail_normalize(out);
+    }
+    return through;
+}
+
+#endif
