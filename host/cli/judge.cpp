@@ -46,7 +46,7 @@ int runJudge(const Options& options) {
     Scene scene = bar.wait("reading " + options.scene, [&] { return loadLit(options.scene, options.crease); });
     if (options.indexOfRefraction > 0)
         for (Material& material : scene.materials) material.indexOfRefraction = options.indexOfRefraction;
-    const Planes method = glassMethod(options.method, options.methodOptions);
+    const GlassMethod method = glassMethod(options.method, options.methodOptions);
     std::uint32_t width = 0, height = 0;
     parseSize(options.size, width, height);
 
@@ -96,8 +96,7 @@ int runJudge(const Options& options) {
     if (options.json) {
         Json out = document("judge");
         out["scene"] = options.scene;
-        out["method"] = Planes::name;
-        out["resolution"] = method.resolution;
+        out["method"] = options.method;
         out["indexOfRefraction"] = scene.materials.empty() ? 1.0f : scene.materials[0].indexOfRefraction;
         out["size"] = {width, height};
         out["correct"] = correct;
@@ -108,6 +107,8 @@ int runJudge(const Options& options) {
         print(out);
         return 0;
     }
+    const Uint3 size = views[0].report.grid;
+    const std::string grid = std::to_string(size.x) + " x " + std::to_string(size.y) + " x " + std::to_string(size.z);
     const auto rate = [](double value) {
         char text[16];
         std::snprintf(text, sizeof text, "%.4f", value);
@@ -125,8 +126,7 @@ int runJudge(const Options& options) {
         table.row({"yaw " + angle(view.yaw), countText(e.pixels), rate(e.correct), rate(e.close), angle(e.medianDegrees), angle(e.worstDegrees),
                    rate(e.pixels == 0 ? 1.0 : double(e.stablePixels) / double(e.pixels)), rate(e.stableCorrect), angle(e.transmittanceMean)});
     }
-    std::fputs((options.scene + ": " + std::string(Planes::name) + " in " + countText(static_cast<std::uint64_t>(method.resolution)) +
-                " voxels along the longest axis\n" + table.text() + "mean: correct " + rate(correct) + " (least " + rate(least) + "), stable " +
+    std::fputs((options.scene + ": " + options.method + " in a grid of " + grid + "\n" + table.text() + "mean: correct " + rate(correct) + " (least " + rate(least) + "), stable " +
                 rate(stable) + "\n" + (options.faults.empty() ? "" : options.faults + "\n"))
                    .c_str(),
                stdout);

@@ -136,18 +136,9 @@ void parseSize(const std::string& text, std::uint32_t& width, std::uint32_t& hei
         throw Error(ErrorCode::badOption, {.what = "--size " + text + " is no picture size", .remedy = "WIDTHxHEIGHT in pixels, 1 to 8192 each, such as 768x768"});
 }
 
-Planes glassMethod(const std::string& name, const MethodOptions& options) {
+GlassMethod glassMethod(const std::string& name, const MethodOptions& options) {
     const Method* row = findMethod(name);
-    if (row == nullptr || row->family != Family::glass)
-        throw Error(ErrorCode::badOption, {.what = "there is no glass method \"" + name + "\"", .remedy = "one of " + methodNames(Family::glass)});
-    Planes method;
-    for (const std::string& given : options.givenFor(*row)) {
-        const std::size_t equals = given.find('=');
-        Planes::visitOptions(method, [&](std::string_view option, float& value) {
-            if (option == std::string_view(given).substr(0, equals)) value = std::stof(given.substr(equals + 1));
-        });
-    }
-    return method;
+    return glassByName(name, row != nullptr ? options.givenFor(*row) : std::vector<std::string>());
 }
 
 Mesh loadMesh(const std::string& file) {

@@ -79,7 +79,7 @@ std::string voxelizerNames();
 void parseSize(const std::string& text, std::uint32_t& width, std::uint32_t& height);
 
 /// The glass method called `name` with the options given. Throws Error (badOption) that lists what there is.
-Planes glassMethod(const std::string& name, const MethodOptions& options);
+GlassMethod glassMethod(const std::string& name, const MethodOptions& options);
 
 /// Reads a mesh, and says on standard error what its reader mended.
 Mesh loadMesh(const std::string& file);

@@ -7,6 +7,7 @@
 #include <vitrail/layout/shading.h>
 #include <vitrail/methods.h>
 #include <vitrail/raster/gbuffer.h>
+#include <vitrail/voxelize/lists.h>
 #include <vitrail/voxelize/surface.h>
 
 #include "light/image_state.h"
@@ -68,28 +69,44 @@ vitrail_LightDesc describeLight(const Scene& scene, const Ground& ground, const 
 struct Volume {
     Grid grid;
     DeviceMesh mesh;
-    SurfaceVoxels voxels;
+    Voxels voxels;
+    Buffer<vitrail_SurfaceVoxel> surface;        // of Planes
+    Buffer<std::uint32_t> triangles, ends;       // of Exact
     GBuffer gbuffer;
     Buffer<vitrail_MaterialDesc> materials;
     std::int32_t bound;  ///< a walk crosses at most this many cells on four straight ways through the grid; a march past it is ended and counted
 };
 
-Volume volumeOf(detail::Call& call, const Scene& scene, const Camera& camera, const Planes& method) {
+float resolutionOf(const GlassMethod& method) {
+    return std::visit([](const auto& one) { return one.resolution; }, method);
+}
+
+std::string_view nameOf(const GlassMethod& method) {
+    return std::visit([](const auto& one) { return one.name; }, method);
+}
+
+Volume volumeOf(detail::Call& call, const Scene& scene, const Camera& camera, const GlassMethod& method) {
     Queue& queue = call.queue();
-    const Grid grid = Grid::fit(scene.mesh.bounds(), static_cast<std::uint32_t>(method.resolution));
+    const Grid grid = Grid::fit(scene.mesh.bounds(), static_cast<std::uint32_t>(resolutionOf(method)));
     DeviceMesh mesh(queue, scene.mesh.view());
-    SurfaceVoxels voxels = voxelizeSurface(queue, mesh, grid);
     GBuffer gbuffer = rasterize(queue, mesh, camera);
     std::vector<vitrail_MaterialDesc> table;
     for (const Material& m : scene.materials) table.push_back({with(m.baseColour, m.transmission), with(m.absorption(), m.indexOfRefraction)});
     Buffer<vitrail_MaterialDesc> materials = queue.workspace().take<vitrail_MaterialDesc>(table.size(), "materials");
     call.upload(materials, table.data(), table.size());
     const Uint3 size = grid.size();
-    return {grid, std::move(mesh), std::move(voxels), std::move(gbuffer), std::move(materials), static_cast<std::int32_t>(4 * (size.x + size.y + size.z))};
+    const auto bound = static_cast<std::int32_t>(4 * (size.x + size.y + size.z));
+    if (std::holds_alternative<Exact>(method)) {
+        VoxelLists lists = voxelizeLists(queue, mesh, grid);
+        return {grid, std::move(mesh), std::move(lists.voxels), {}, std::move(lists.triangles), std::move(lists.ends), std::move(gbuffer),
+                std::move(materials), bound};
+    }
+    SurfaceVoxels surface = voxelizeSurface(queue, mesh, grid);
+    return {grid, std::move(mesh), std::move(surface.voxels), std::move(surface.surface), {}, {}, std::move(gbuffer), std::move(materials), bound};
 }
 
-void check(const Scene& scene, const Planes& method) {
-    detail::checkOptions(method);
+void check(const Scene& scene, const GlassMethod& method) {
+    std::visit([](const auto& one) { detail::checkOptions(one); }, method);
     if (scene.materials.empty()) throw Error(ErrorCode::badInput, {"the scene has no materials", "", "", "one material, such as defaultGlass(bounds)"});
     for (const std::uint32_t material : scene.mesh.materials)
         if (material >= scene.materials.size())
@@ -102,7 +119,7 @@ template <class... Head, class... Tail>
 void launchRays(detail::Call& call, const char* kernel, const Volume& volume, std::uint64_t samples, const std::tuple<Head...>& head,
                 const std::tuple<Tail...>& tail) {
     constexpr std::uint64_t kBand = 1u << 18;
-    const Voxels& voxels = volume.voxels.voxels;
+    const Voxels& voxels = volume.voxels;
     for (std::uint64_t first = 0; first < samples; first += kBand) {
         call.step("rays", 0.5 + 0.5 * static_cast<double>(first) / static_cast<double>(samples));
         const std::uint64_t count = std::min(kBand, samples - first);
@@ -112,8 +129,9 @@ void launchRays(detail::Call& call, const char* kernel, const Volume& volume, st
                     [&](const auto&... after) {
                         call.launchRange(detail::Program{"light", ""}, kernel, count, volume.grid.desc(), volume.gbuffer.camera, before...,
                                          volume.mesh.positions(), volume.mesh.indices(), volume.mesh.normals(), volume.mesh.materials(),
-                                         volume.gbuffer.triangle, voxels.bits(), voxels.bricks(), voxels.rank(), voxels.mip(), volume.voxels.surface,
-                                         voxels.materialBuffer(), volume.materials, after..., first);
+                                         volume.gbuffer.triangle, voxels.bits(), voxels.bricks(), voxels.rank(), voxels.mip(), volume.surface,
+                                         voxels.materialBuffer(), volume.materials, voxels.countBuffer(), volume.triangles, volume.ends, after...,
+                                         first);
                     },
                     tail);
             },
@@ -149,14 +167,33 @@ Image shadeVoxels(Queue& queue, const Scene& scene, const Camera& camera, const 
     auto image = detail::resolveSamples(call, seen, camera.width, camera.height, effect.samples);
     image->status = std::move(status);
     image->counted.effect = name;
-    image->counted.method = effect.method.name;
+    image->counted.method = nameOf(effect.method);
     image->counted.grid = volume.grid.size();
     image->counted.triangles = volume.mesh.triangleCount();
-    image->counted.occupied = volume.voxels.voxels.occupied();
+    image->counted.occupied = volume.voxels.occupied();
     return Image(std::move(image));
 }
 
 }  // namespace
+
+GlassMethod glassByName(std::string_view name, std::span<const std::string> options) {
+    GlassMethod method;
+    if (name == Exact::name)
+        method = Exact{};
+    else if (name != Planes::name) {
+        std::string known;
+        for (const Method& row : methods())
+            if (row.family == Family::glass) known += (known.empty() ? "" : ", ") + std::string(row.name);
+        throw Error(ErrorCode::badOption, {"there is no glass method \"" + std::string(name) + "\"", "", "", "one of " + known});
+    }
+    std::visit(
+        [&](auto& one) {
+            detail::setOptions(one, options);
+            detail::checkOptions(one);
+        },
+        method);
+    return method;
+}
 
 Image shade(Queue& queue, const Scene& scene, const Camera& camera, const Glass& effect) {
     return shadeVoxels(queue, scene, camera, effect, "glass", "glass_shade");
@@ -166,7 +203,7 @@ Image shade(Queue& queue, const Scene& scene, const Camera& camera, const Shadow
     return shadeVoxels(queue, scene, camera, effect, "shadow", "glass_shadow");
 }
 
-GlassRays glassRays(Queue& queue, const Scene& scene, const Camera& camera, const Planes& method) {
+GlassRays glassRays(Queue& queue, const Scene& scene, const Camera& camera, const GlassMethod& method) {
     check(scene, method);
     GlassRays out;
     std::shared_ptr<detail::Record> record;
@@ -178,10 +215,10 @@ GlassRays glassRays(Queue& queue, const Scene& scene, const Camera& camera, cons
         launchRays(call, "glass_ends", volume, pixels, std::tie(), std::tie(volume.bound, ends));
         out.ends = ends.read(queue);
         out.report.effect = "rays";
-        out.report.method = Planes::name;
+        out.report.method = nameOf(method);
         out.report.grid = volume.grid.size();
         out.report.triangles = volume.mesh.triangleCount();
-        out.report.occupied = volume.voxels.voxels.occupied();
+        out.report.occupied = volume.voxels.occupied();
         record = call.record();
     }
     static_cast<CallReport&>(out.report) = detail::resolve(*record);

@@ -1,6 +1,7 @@
 #include "voxelize/prepare.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -25,6 +26,36 @@ void checkOption(const Method& row, std::string_view option, double value) {
                                                std::string(option) + " from " + range});
         }
     throw Error(ErrorCode::badOption, {std::string(row.name) + " has no option \"" + std::string(option) + "\"", "", "", "`vitrail info --methods`"});
+}
+
+namespace {
+
+/// "safetyFactor (0.25 to 16)"
+std::string optionsOf(const Method& row) {
+    std::string all;
+    for (const MethodOption& option : row.options) {
+        if (option.name.empty()) continue;
+        char range[96];
+        std::snprintf(range, sizeof range, " (%g to %g)", option.least, option.most);
+        all += (all.empty() ? "" : ", ") + std::string(option.name) + range;
+    }
+    return all.empty() ? std::string(row.name) + " without options" : all;
+}
+
+}  // namespace
+
+double optionValue(const Method& row, const std::string& text) {
+    const std::size_t equals = std::min(text.find('='), text.size());
+    const char *first = text.data() + std::min(equals + 1, text.size()), *last = text.data() + text.size();
+    double value = 0;
+    const auto [end, error] = std::from_chars(first, last, value);
+    if (error != std::errc() || end != last || first == last)
+        throw Error(ErrorCode::badOption, {std::string(row.name) + ": \"" + text + "\" gives no number", "", "", optionsOf(row)});
+    return value;
+}
+
+void failUnknownOption(const Method& row, const std::string& text) {
+    throw Error(ErrorCode::badOption, {std::string(row.name) + " has no option \"" + text.substr(0, text.find('=')) + "\"", "", "", optionsOf(row)});
 }
 
 void forTriangles(Pass& pass, const char* step, bool second, const std::function<void(std::uint32_t, std::uint32_t)>& launch) {

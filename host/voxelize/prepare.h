@@ -1,7 +1,10 @@
 // voxelize/prepare.h: what every voxelizer does alike: check, upload, take memory, run its bits, then its channels.
 #pragma once
 #include <functional>
+#include <span>
 #include <string>
+#include <string_view>
+#include <type_traits>
 
 #include <vitrail/grid/grid.h>
 #include <vitrail/methods.h>
@@ -31,6 +34,24 @@ std::string checkOptions(const M& method) {
         text += optionText(option, static_cast<double>(value));
     });
     return text;
+}
+
+/// The number in "name=value", which is an option of `row`. Throws Error (badOption).
+double optionValue(const Method& row, const std::string& text);
+[[noreturn]] void failUnknownOption(const Method& row, const std::string& text);
+
+/// Sets the members that "name=value" speak of. Throws Error (badOption).
+template <class M>
+void setOptions(M& method, std::span<const std::string> options) {
+    for (const std::string& text : options) {
+        bool known = false;
+        M::visitOptions(method, [&](std::string_view name, auto& member) {
+            if (name != std::string_view(text).substr(0, text.find('='))) return;
+            known = true;
+            member = static_cast<std::remove_reference_t<decltype(member)>>(optionValue(*findMethod(M::name), text));
+        });
+        if (!known) failUnknownOption(*findMethod(M::name), text);
+    }
 }
 
 /// Triangles that kernels work on together (LANES of kernels/lib/lanes.cl).

@@ -68,6 +68,9 @@ inline constexpr Method kMethods[] = {
      "Every crossing from one plane and the gradient of its normal in a voxel; walls thinner than a voxel are lost.", false, false,
      Role::product,
      {MethodOption{"resolution", 256, 8, 2048, "voxels", "voxels along the longest axis"}, kNoOption, kNoOption}},
+    {"exact", Family::glass, "Chang et al. 2013, section 5.2, with the triangles themselves", Guarantee::exact,
+     "Every crossing with the triangles of the voxel: as rays through the mesh, up to rounding, at any resolution.", false, false, Role::product,
+     {MethodOption{"resolution", 128, 8, 2048, "voxels", "voxels along the longest axis"}, kNoOption, kNoOption}},
 };
 
 constexpr std::span<const Method> methods() { return kMethods; }

@@ -1,5 +1,5 @@
-// light/glass.cl: rays through voxels that know their surface (vitrail/light/glass.h). One state, inside or outside, decides which planes
-// count: outside only planes that face the ray are entered, inside only planes that face away are left, so that neighbouring voxels that
+// light/glass.cl: rays through voxels that know their surface, or the triangles in them (vitrail/light/glass.h). Of planes, one state, inside
+// or outside, decides which count: outside only planes that face the ray are entered, inside only planes that face away are left, so that neighbouring voxels that
 // hold the same surface never count it twice and a plane may be met a little outside its own cell.
 #include "layout/grid.h"
 #include "layout/ray_end.h"
@@ -23,24 +23,147 @@ typedef struct {
     global const uint2* bricks;
     global const uint* rank;
     global const uchar* mip;
-    global const vitrail_SurfaceVoxel* surface;
+    global const vitrail_SurfaceVoxel* surface;  // null: lists of triangles
     global const uint* voxelMaterial;
     global const vitrail_MaterialDesc* materials;
     int bound;  // steps of one march
+    // The triangles of voxel i are list[end[i] - counts[i]] to list[end[i] - 1].
+    global const uint* counts;
+    global const uint* list;
+    global const uint* end;
+    global const float* positions;
+    global const uint* indices;
+    global const float* normals;
+    global const uint* triangleMaterial;
 } Volume;
+
+#define NO_TRIANGLE 0xffffffffu
 
 // A surface that a march met.
 typedef struct {
     float t;
     float3 position, normal, flat;  // voxel coordinates; unit normals, outward: for shading, and of the plane
-    uint material;
+    uint material, triangle;
+    bool inside;  // whether the ray came from within
 } Crossing;
 
+static inline float3 to_voxel(const vitrail_GridDesc* grid, float3 p) { return (p - xyz(grid->origin)) / grid->extent.x; }
+static inline float3 to_world(const vitrail_GridDesc* grid, float3 p) { return p * grid->extent.x + xyz(grid->origin); }
+
+// A ray in the space in which it is the z axis (Woop, Benthin & Wald 2013): edges that triangles share give the same number with either sign,
+// so nothing slips between them.
+typedef struct {
+    float3 origin;
+    int x, y, z;  // axes, z the longest of the direction
+    float shearX, shearY, scale;
+} Sheared;
+
+static inline float glass_axis(float3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
+
+static inline Sheared glass_shear(float3 origin, float3 d) {
+    Sheared s;
+    s.origin = origin;
+    const float3 a = fabs(d);
+    s.z = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
+    s.x = s.z == 2 ? 0 : s.z + 1;
+    s.y = s.x == 2 ? 0 : s.x + 1;
+    s.scale = 1.0f / glass_axis(d, s.z);
+    s.shearX = glass_axis(d, s.x) * s.scale;
+    s.shearY = glass_axis(d, s.y) * s.scale;
+    return s;
+}
+
+// Triangle corners in voxel coordinates.
+static inline void glass_corners(const Volume* volume, uint triangle, uint index[3], float3 v[3]) {
+    for (int k = 0; k < 3; ++k) {
+        index[k] = volume->indices[3 * (size_t)triangle + k];
+        const size_t at = 3 * (size_t)index[k];
+        v[k] = to_voxel(volume->grid, (float3)(volume->positions[at], volume->positions[at + 1], volume->positions[at + 2]));
+    }
+}
+
+// Where the ray meets a triangle: shares of the corners, and t. False: it does not.
+static inline bool glass_meets(const Sheared* s, const float3 v[3], float share[3], float* t) {
+    float x[3], y[3], z[3];
+    for (int k = 0; k < 3; ++k) {
+        const float3 r = v[k] - s->origin;
+        z[k] = glass_axis(r, s->z);
+        x[k] = glass_axis(r, s->x) - s->shearX * z[k];
+        y[k] = glass_axis(r, s->y) - s->shearY * z[k];
+    }
+    const float a = x[2] * y[1] - y[2] * x[1], b = x[0] * y[2] - y[0] * x[2], c = x[1] * y[0] - y[1] * x[0];
+    if ((a < 0.0f || b < 0.0f || c < 0.0f) && (a > 0.0f || b > 0.0f || c > 0.0f)) return false;
+    const float sum = a + b + c;
+    if (sum == 0.0f) return false;
+    share[0] = a / sum;
+    share[1] = b / sum;
+    share[2] = c / sum;
+    *t = (share[0] * z[0] + share[1] * z[1] + share[2] * z[2]) * s->scale;
+    return true;
+}
+
+// The shading normal there, or the flat one.
+static inline float3 glass_shading(global const float* normals, const uint index[3], const float share[3], float3 flat) {
+    if (!normals) return flat;
+    float3 m = (float3)(0.0f);
+    for (int k = 0; k < 3; ++k) {
+        const size_t at = 3 * (size_t)index[k];
+        m += (float3)(normals[at], normals[at + 1], normals[at + 2]) * share[k];
+    }
+    const float length = sqrt(dot(m, m));
+    return length > 0.0f ? m / length : flat;
+}
+
+// The nearest triangle past tLeast that is not the one the ray stands on; of equally near ones the lowest.
+static inline bool glass_next_triangle(const Volume* volume, float3 origin, float3 direction, float tLeast, uint last, int* steps, Crossing* hit) {
+    Dda dda;
+    dda.steps = *steps;
+    uint nearest = NO_TRIANGLE;
+    float best = 1e30f;
+    const Sheared s = glass_shear(origin, direction);
+    if (dda_start(&dda, volume->grid, origin, direction, fmax(tLeast - REACH, 0.0f))) {
+        size_t word;
+        while (dda_find(&dda, volume->grid, volume->words, volume->bricks, volume->mip, volume->bound, &word)) {
+            if (nearest != NO_TRIANGLE && dda.enter > best) break;
+            const uint index = bits_rank(volume->words, volume->rank, word, (uint)dda.z & 31u), end = volume->end[index];
+            for (uint at = end - volume->counts[index]; at < end; ++at) {
+                const uint triangle = volume->list[at];
+                if (triangle == last) continue;
+                uint corner[3];
+                float3 v[3];
+                float share[3], t;
+                glass_corners(volume, triangle, corner, v);
+                if (!glass_meets(&s, v, share, &t) || !(t > tLeast) || t > best || (t == best && triangle > nearest)) continue;
+                best = t;
+                nearest = triangle;
+            }
+            if (!dda_step(&dda, volume->grid)) break;
+        }
+    }
+    *steps = dda.steps;
+    if (nearest == NO_TRIANGLE) return false;
+    uint corner[3];
+    float3 v[3];
+    float share[3];
+    glass_corners(volume, nearest, corner, v);
+    glass_meets(&s, v, share, &hit->t);
+    hit->position = origin + direction * hit->t;
+    const float3 across = cross(v[1] - v[0], v[2] - v[0]);
+    hit->flat = across / sqrt(dot(across, across));
+    hit->normal = glass_shading(volume->normals, corner, share, hit->flat);
+    hit->triangle = nearest;
+    hit->material = volume->triangleMaterial ? volume->triangleMaterial[nearest] : 0u;
+    hit->inside = dot(direction, hit->flat) > 0.0f;
+    return true;
+}
+
 // The next boundary along a ray that is `inside` glass or not. Opaque voxels count from outside and from inside. False: none.
-static inline bool glass_next(const Volume* volume, float3 origin, float3 direction, bool inside, float tLeast, int* steps, Crossing* hit) {
+static inline bool glass_next_plane(const Volume* volume, float3 origin, float3 direction, bool inside, float tLeast, int* steps, Crossing* hit) {
     Dda dda;
     dda.steps = *steps;
     bool found = false;
+    hit->inside = inside;
+    hit->triangle = NO_TRIANGLE;
     if (dda_start(&dda, volume->grid, origin, direction, fmax(tLeast - REACH, 0.0f))) {
         float best = 1e30f;
         size_t word;
@@ -74,6 +197,11 @@ static inline bool glass_next(const Volume* volume, float3 origin, float3 direct
     return found;
 }
 
+static inline bool glass_next(const Volume* volume, float3 origin, float3 direction, bool inside, float tLeast, uint last, int* steps, Crossing* hit) {
+    return volume->surface ? glass_next_plane(volume, origin, direction, inside, tLeast, steps, hit)
+                           : glass_next_triangle(volume, origin, direction, tLeast, last, steps, hit);
+}
+
 // vitrail_facing and vitrail_cross of layout/ray_end.h.
 static inline float3 glass_facing(float3 d, float3 normal, float3 flat) {
     float out[3];
@@ -89,9 +217,6 @@ static inline bool glass_cross(float3* d, float3 facing, float3 flat, float rati
     return through;
 }
 
-static inline float3 to_voxel(const vitrail_GridDesc* grid, float3 p) { return (p - xyz(grid->origin)) / grid->extent.x; }
-static inline float3 to_world(const vitrail_GridDesc* grid, float3 p) { return p * grid->extent.x + xyz(grid->origin); }
-
 static inline float3 glass_absorb(const vitrail_MaterialDesc* m, float length) { return exp(-xyz(m->absorption) * length); }
 
 // Transmittance from a point straight to the light: Beer-Lambert inside, 1 - F at each crossing, 0 behind opaque voxels.
@@ -99,9 +224,12 @@ static float3 glass_transmittance(const Volume* volume, float3 p, float3 toLight
     float3 through = (float3)(1.0f);
     float t = 0.02f;
     int steps = 0;
+    uint last = NO_TRIANGLE;
     for (int event = 0; event < VITRAIL_MOST_EVENTS; ++event) {
         Crossing hit;
-        if (!glass_next(volume, p, toLight, inside, t, &steps, &hit)) return through;
+        if (!glass_next(volume, p, toLight, inside, t, last, &steps, &hit)) return through;
+        inside = hit.inside;
+        last = hit.triangle;
         const vitrail_MaterialDesc m = volume->materials[inside ? material : hit.material];
         if (volume->materials[hit.material].colour.w <= 0.5f) return (float3)(0.0f);
         if (inside) through *= glass_absorb(&m, (hit.t - t) * volume->grid->extent.x);
@@ -166,24 +294,15 @@ static inline bool glass_first_hit(const vitrail_GridDesc* grid, global const fl
     const float3 r = p - v[0];
     const float b1 = clamp(dot(cross(r, w), n) / (area * area), 0.0f, 1.0f), b2 = clamp(dot(cross(u, r), n) / (area * area), 0.0f, 1.0f);
     *position = to_voxel(grid, p);
-    *normal = *flat;
-    if (normals) {
-        float3 m = (float3)(0.0f);
-        const float share[3] = {1.0f - b1 - b2, b1, b2};
-        for (int k = 0; k < 3; ++k) {
-            const size_t at = 3 * (size_t)index[k];
-            m += (float3)(normals[at], normals[at + 1], normals[at + 2]) * share[k];
-        }
-        const float length = sqrt(dot(m, m));
-        if (length > 0.0f) *normal = m / length;
-    }
+    const float share[3] = {1.0f - b1 - b2, b1, b2};
+    *normal = glass_shading(normals, index, share, *flat);
     return true;
 }
 
 // Follows a ray that stands on a first hit through the glass to its two ends; `mirror`: the first surface also shows its mirror image, and
 // what goes through loses as much. Later surfaces do not (one ray a sample).
-static void glass_trace(const Volume* volume, float3 position, float3 normal, float3 flat, uint material, float3 direction, bool mirror,
-                        End ends[2], uint* fate, uint* events) {
+static void glass_trace(const Volume* volume, float3 position, float3 normal, float3 flat, uint material, uint triangle, float3 direction,
+                        bool mirror, End ends[2], uint* fate, uint* events) {
     const vitrail_MaterialDesc first = volume->materials[material];
     *events = 0u;
     if (first.colour.w <= 0.5f) {
@@ -209,14 +328,16 @@ static void glass_trace(const Volume* volume, float3 position, float3 normal, fl
         if (glass_cross(&direction, n, flat, ratio)) inside = !inside;
         ++*events;
         Crossing hit;
-        if (!glass_next(volume, position, direction, inside, 1e-3f, &steps, &hit)) {
+        if (!glass_next(volume, position, direction, inside, volume->surface ? 1e-3f : 1e-4f, triangle, &steps, &hit)) {
             if (steps >= volume->bound)
                 *fate = VITRAIL_RAY_BOUNDED;
             else if (inside)
                 *fate = VITRAIL_RAY_LOST;
             break;
         }
-        if (!inside) current = hit.material;
+        inside = hit.inside;
+        triangle = hit.triangle;
+        if (!inside || triangle != NO_TRIANGLE) current = hit.material;
         const vitrail_MaterialDesc m = volume->materials[current], met = volume->materials[hit.material];
         if (inside) through *= glass_absorb(&m, hit.t * volume->grid->extent.x);
         if (met.colour.w <= 0.5f) {
@@ -244,9 +365,11 @@ kernel void glass_shade(const vitrail_GridDesc grid, const vitrail_CameraDesc ca
                         global const float* positions, global const uint* indices, global const float* normals,
                         global const uint* triangleMaterial, global const uint* nearest, global const uint* words, global const uint2* bricks,
                         global const uint* rank, global const uchar* mip, global const vitrail_SurfaceVoxel* surface, global const uint* voxelMaterial,
-                        global const vitrail_MaterialDesc* materials, global const float4* map, int bound, global uint* status,
+                        global const vitrail_MaterialDesc* materials,
+                         global const uint* counts, global const uint* list, global const uint* end, global const float4* map, int bound, global uint* status,
                         global float4* samples, ulong first, ulong count, uint perItem) {
-    const Volume volume = {&grid, words, bricks, rank, mip, surface, voxelMaterial, materials, bound};
+    const Volume volume = {&grid, words, bricks, rank, mip, surface, voxelMaterial, materials, bound, counts, list, end, positions, indices, normals,
+                           triangleMaterial};
     const float width = 2.0f * camera.up.w / (float)camera.height;  // of a pixel at distance 1; the ground's tiles are filtered by it
     FOR_RANGE(i, count, perItem) {
         const size_t pixel = first + i;
@@ -262,7 +385,7 @@ kernel void glass_shade(const vitrail_GridDesc grid, const vitrail_CameraDesc ca
         uint fate = VITRAIL_RAY_MISSED, events = 0u;
         if (triangle != 0xffffffffu &&
             glass_first_hit(&grid, positions, indices, normals, triangle, o, d, &position, &normal, &flat))
-            glass_trace(&volume, position, normal, flat, triangleMaterial ? triangleMaterial[triangle] : 0u, d, true, ends, &fate, &events);
+            glass_trace(&volume, position, normal, flat, triangleMaterial ? triangleMaterial[triangle] : 0u, triangle, d, true, ends, &fate, &events);
         if (fate == VITRAIL_RAY_LOST) atomic_inc(status + STATUS_LOST);
         if (fate == VITRAIL_RAY_BOUNDED) atomic_inc(status + STATUS_BOUNDED);
         float3 seen = (float3)(0.0f);
@@ -276,9 +399,11 @@ kernel void glass_shade(const vitrail_GridDesc grid, const vitrail_CameraDesc ca
 kernel void glass_ends(const vitrail_GridDesc grid, const vitrail_CameraDesc camera, global const float* positions, global const uint* indices,
                        global const float* normals, global const uint* triangleMaterial, global const uint* nearest, global const uint* words,
                        global const uint2* bricks, global const uint* rank, global const uchar* mip, global const vitrail_SurfaceVoxel* surface,
-                       global const uint* voxelMaterial, global const vitrail_MaterialDesc* materials, int bound,
+                       global const uint* voxelMaterial, global const vitrail_MaterialDesc* materials,
+                         global const uint* counts, global const uint* list, global const uint* end, int bound,
                        global vitrail_RayEnd* rays, ulong first, ulong count, uint perItem) {
-    const Volume volume = {&grid, words, bricks, rank, mip, surface, voxelMaterial, materials, bound};
+    const Volume volume = {&grid, words, bricks, rank, mip, surface, voxelMaterial, materials, bound, counts, list, end, positions, indices, normals,
+                           triangleMaterial};
     FOR_RANGE(i, count, perItem) {
         const size_t pixel = first + i;
         float3 o, d, position, normal, flat;
@@ -289,7 +414,7 @@ kernel void glass_ends(const vitrail_GridDesc grid, const vitrail_CameraDesc cam
         ends[0].direction = d;
         uint fate = VITRAIL_RAY_MISSED, events = 0u;
         if (triangle != 0xffffffffu && glass_first_hit(&grid, positions, indices, normals, triangle, o, d, &position, &normal, &flat))
-            glass_trace(&volume, position, normal, flat, triangleMaterial ? triangleMaterial[triangle] : 0u, d, false, ends, &fate, &events);
+            glass_trace(&volume, position, normal, flat, triangleMaterial ? triangleMaterial[triangle] : 0u, triangle, d, false, ends, &fate, &events);
         const End end = ends[0];
         const vitrail_RayEnd out = {{end.direction.x, end.direction.y, end.direction.z}, fate, {end.weight.x, end.weight.y, end.weight.z}, events};
         rays[pixel] = out;
@@ -301,8 +426,10 @@ kernel void glass_shadow(const vitrail_GridDesc grid, const vitrail_CameraDesc c
                          global const float* positions, global const uint* indices, global const float* normals,
                          global const uint* triangleMaterial, global const uint* nearest, global const uint* words, global const uint2* bricks,
                          global const uint* rank, global const uchar* mip, global const vitrail_SurfaceVoxel* surface, global const uint* voxelMaterial,
-                         global const vitrail_MaterialDesc* materials, int bound, global float4* samples, ulong first, ulong count, uint perItem) {
-    const Volume volume = {&grid, words, bricks, rank, mip, surface, voxelMaterial, materials, bound};
+                         global const vitrail_MaterialDesc* materials,
+                         global const uint* counts, global const uint* list, global const uint* end, int bound, global float4* samples, ulong first, ulong count, uint perItem) {
+    const Volume volume = {&grid, words, bricks, rank, mip, surface, voxelMaterial, materials, bound, counts, list, end, positions, indices, normals,
+                           triangleMaterial};
     const float3 toLight = xyz(light.toLight);
     FOR_RANGE(i, count, perItem) {
         const size_t pixel = first + i;

@@ -21,7 +21,7 @@ int main(int argc, char** argv) {
         vitrail::Device device = vitrail::Device::select();
         vitrail::Queue queue(device);
         const vitrail::Camera camera = vitrail::Camera::around(scene.mesh.bounds(), 30, 20, 192, 192);
-        const vitrail::Image image = vitrail::shade(queue, scene, camera, vitrail::Glass{.method = {.resolution = 96}});
+        const vitrail::Image image = vitrail::shade(queue, scene, camera, vitrail::Glass{.method = vitrail::Planes{.resolution = 96}});
 
         vitrail::savePicture(argc > 2 ? argv[2] : "gltf_glass.png", image.picture(), 0.8f);
         std::printf("%llu rays through %llu voxels, %llu lost\n", static_cast<unsigned long long>(image.report().rays),

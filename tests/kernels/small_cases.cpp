@@ -77,8 +77,9 @@ int main() {
         scene.mesh = withSmoothNormals(makeShape("sphere", coarse));
         scene.materials = {defaultGlass(scene.mesh.bounds())};
         const Camera camera = Camera::around(scene.mesh.bounds(), 30, 20, 4, 3);
-        (void)shade(queue, scene, camera, Glass{.method = {.resolution = 8}, .samples = 1}).picture();
-        (void)shade(queue, scene, camera, Shadow{.method = {.resolution = 8}, .samples = 1}).picture();
+        (void)shade(queue, scene, camera, Glass{.method = Planes{.resolution = 8}, .samples = 1}).picture();
+        (void)glassRays(queue, scene, camera, Exact{.resolution = 8});
+        (void)shade(queue, scene, camera, Shadow{.method = Planes{.resolution = 8}, .samples = 1}).picture();
         const Grid grid = Grid::fit(scene.mesh.bounds(), 8);
         const Voxels voxels = voxelize(queue, scene.mesh, grid, Conservative{.channels = Channel::count | Channel::normal});
         (void)shade(queue, voxels, camera, Boxes{.samples = 1}).picture();

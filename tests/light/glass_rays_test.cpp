@@ -5,6 +5,8 @@
 #include <vitrail/reference/glass.h>
 #include <vitrail/scene/shapes.h>
 
+#include <cstring>
+
 #include "tests/support/device.h"
 
 namespace vitrail {
@@ -20,31 +22,52 @@ Scene sceneOf(const char* shape, float index) {
     return scene;
 }
 
-TEST(GlassRays, AreThoseOfTheTriangles) {
-    // Rates at 96 voxels and 128 x 128 pixels: measured 0.9995, 0.9946, 0.9683, 0.9825 and 1, 1, 0.9934, 1, less a hundredth. The box loses
-    // the voxels of its edges, whose two faces average to one plane.
-    const struct {
-        const char* shape;
-        float index;
-        double correct, stable;
-    } cases[] = {{"sphere", 1.14f, 0.989, 0.99}, {"torus", 1.14f, 0.984, 0.99}, {"box", 1.14f, 0.958, 0.983}, {"torus", 1.5f, 0.972, 0.99}};
-    for (const auto& one : cases) {
-        const Scene scene = sceneOf(one.shape, one.index);
-        const Camera camera = Camera::around(scene.mesh.bounds(), 33, 22, 128, 128);
-        const GlassRays rays = glassRays(queue(), scene, camera, Planes{.resolution = 96});
-        std::vector<std::vector<vitrail_RayEnd>> shifted;
-        for (const double x : {-0.25, 0.25})
-            for (const double y : {-0.25, 0.25}) shifted.push_back(reference::glass(scene, camera, x, y));
-        const RayErrors errors = compareRays(rays.ends, reference::glass(scene, camera), shifted);
-        EXPECT_GT(errors.pixels, 1500u);
-        EXPECT_GE(errors.correct, one.correct) << one.shape << " " << one.index;
-        EXPECT_GE(errors.stableCorrect, one.stable) << one.shape << " " << one.index;
-        EXPECT_LT(errors.transmittanceMean, 0.005) << one.shape << " " << one.index;
-        const GlassRays again = glassRays(queue(), scene, camera, Planes{.resolution = 96});
-        for (std::size_t i = 0; i < rays.ends.size(); ++i)
-            ASSERT_TRUE(std::equal(rays.ends[i].direction, rays.ends[i].direction + 3, again.ends[i].direction) && rays.ends[i].fate == again.ends[i].fate &&
-                        rays.ends[i].events == again.ends[i].events);
+void expectRates(const char* shape, float index, const GlassMethod& method, double correct, double stable, double transmittance) {
+    const Scene scene = sceneOf(shape, index);
+    const Camera camera = Camera::around(scene.mesh.bounds(), 33, 22, 128, 128);
+    const GlassRays rays = glassRays(queue(), scene, camera, method);
+    std::vector<std::vector<vitrail_RayEnd>> shifted;
+    for (const double x : {-0.25, 0.25})
+        for (const double y : {-0.25, 0.25}) shifted.push_back(reference::glass(scene, camera, x, y));
+    const RayErrors errors = compareRays(rays.ends, reference::glass(scene, camera), shifted);
+    const std::string what = std::string(shape) + " " + rays.report.method;
+    EXPECT_GT(errors.pixels, 1500u) << what;
+    EXPECT_GE(errors.correct, correct) << what;
+    EXPECT_GE(errors.stableCorrect, stable) << what;
+    EXPECT_LE(errors.transmittanceMean, transmittance) << what;
+    const GlassRays again = glassRays(queue(), scene, camera, method);
+    EXPECT_EQ(std::memcmp(rays.ends.data(), again.ends.data(), rays.ends.size() * sizeof(vitrail_RayEnd)), 0) << what;
+}
+
+// Rates at 96 voxels and 128 x 128 pixels: measured 0.9995, 0.9946, 0.9683, 0.9825 and 1, 1, 0.9934, 1, less a hundredth. The box loses the
+// voxels of its edges, whose two faces average to one plane.
+TEST(GlassRays, OfPlanesAreNearThoseOfTheTriangles) {
+    const Planes method{.resolution = 96};
+    expectRates("sphere", 1.14f, method, 0.989, 0.99, 0.005);
+    expectRates("torus", 1.14f, method, 0.984, 0.99, 0.005);
+    expectRates("box", 1.14f, method, 0.958, 0.983, 0.005);
+    expectRates("torus", 1.5f, method, 0.972, 0.99, 0.005);
+}
+
+// The same crossings by other arithmetic: only rays near an edge or the critical angle may differ. Rate: 1 in 200, of stable ones 1 in 500.
+TEST(GlassRays, OfTrianglesAreThose) {
+    for (const float resolution : {16.0f, 96.0f})
+        for (const char* shape : {"sphere", "torus", "box", "knot"})
+            for (const float index : {1.14f, 1.5f}) expectRates(shape, index, Exact{.resolution = resolution}, 0.995, 0.998, 0.001);
+}
+
+// A triangle's own crossing decides between inside and outside, so bodies that pass through each other are as the reference has them.
+TEST(GlassRays, OfTrianglesFollowBodiesThatOverlap) {
+    Scene scene = sceneOf("torus", 1.3f);
+    const Mesh other = withSmoothNormals(makeShape("sphere"), 45.0f);
+    const auto first = static_cast<std::uint32_t>(scene.mesh.positions.size());
+    for (std::size_t i = 0; i < other.positions.size(); ++i) {
+        scene.mesh.positions.push_back(other.positions[i] * 0.5f + Float3(0.2f, 0.1f, 0));
+        scene.mesh.normals.push_back(other.normals[i]);
     }
+    for (const std::uint32_t index : other.indices) scene.mesh.indices.push_back(first + index);
+    const Camera camera = Camera::around(scene.mesh.bounds(), 33, 22, 96, 96);
+    EXPECT_GE(compareRays(glassRays(queue(), scene, camera, Exact{.resolution = 48}).ends, reference::glass(scene, camera)).correct, 0.99);
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ TEST(Glass, InAFurnaceNoLightIsLostOrMade) {
         Scene scene = sceneOf(makeShape(shape), 1.5f);
         furnace(scene);
         const Image image = shade(queue(), scene, Camera::around(scene.mesh.bounds(), 30, 20, 48, 48),
-                                  Glass{.method = {.resolution = 64}, .ground = kNoGround, .samples = 1});
+                                  Glass{.method = Planes{.resolution = 64}, .ground = kNoGround, .samples = 1});
         // Every ray ends in the same light, by however many reflections: F + (1 - F) = 1 up to float rounding.
         for (const Float4& p : image.picture().pixels)
             ASSERT_NEAR(p.y, 1.0, 1e-5) << shape;
@@ -61,7 +61,7 @@ TEST(Glass, ASlabAbsorbsByItsThickness) {
     Scene scene = sceneOf(makeShape("box"), 1.4f, static_cast<float>(kept));
     furnace(scene);
     ASSERT_NEAR(scene.mesh.bounds().high.z - scene.mesh.bounds().low.z, thickness, 1e-6);
-    const Image image = shade(queue(), scene, frontal(), Glass{.method = {.resolution = 32}, .ground = kNoGround, .samples = 1});
+    const Image image = shade(queue(), scene, frontal(), Glass{.method = Planes{.resolution = 32}, .ground = kNoGround, .samples = 1});
     // Straight on: the mirror image F, and what goes through once: (1 - F) exp(-sigma d). The back plane is stored to 1/1023 cell and its
     // normal to 4e-5 rad: d is off by at most 1/(32 * 2046) + rounding, the result by less than 1e-4.
     const double f = reflectedStraight(1.4), expected = f + (1 - f) * std::pow(kept, thickness);
@@ -95,7 +95,7 @@ TEST(Glass, ASphereBendsRaysBySnellsLaw) {
     scene.environment.map = directionMap();
     const float size = scene.mesh.bounds().high.x;
     const Camera camera = frontal(64);
-    const Image image = shade(queue(), scene, camera, Glass{.method = {.resolution = 128}, .ground = kNoGround, .samples = 1});
+    const Image image = shade(queue(), scene, camera, Glass{.method = Planes{.resolution = 128}, .ground = kNoGround, .samples = 1});
     int all = 0, good = 0;
     double sum = 0;
     for (std::uint32_t y = 0; y < camera.height; ++y)
@@ -138,7 +138,7 @@ TEST(Glass, TotalReflectionTurnsRaysInAPrism) {
         camera.target = Float3(0.3f, 0.5f, 0.0f);
         camera.orthographicHeight = 0.1f;
         camera.width = camera.height = 4;
-        const Image image = shade(queue(), scene, camera, Glass{.method = {.resolution = 64}, .ground = kNoGround, .samples = 1});
+        const Image image = shade(queue(), scene, camera, Glass{.method = Planes{.resolution = 64}, .ground = kNoGround, .samples = 1});
         const double f = reflectedStraight(eta), z = (image.picture().at(1, 1).z - f * 1.0) / (1 - f) * 2 - 1;  // of the last direction
         if (returns)
             EXPECT_NEAR(z, 1.0, 0.02);
@@ -152,7 +152,7 @@ TEST(Glass, OpaqueMaterialsEndARay) {
     scene.materials[0].transmission = 0;
     scene.materials[0].baseColour = Float3(1.0f, 0.0f, 0.0f);
     furnace(scene);
-    const Image image = shade(queue(), scene, frontal(), Glass{.method = {.resolution = 16}, .ground = kNoGround, .samples = 1});
+    const Image image = shade(queue(), scene, frontal(), Glass{.method = Planes{.resolution = 16}, .ground = kNoGround, .samples = 1});
     EXPECT_GT(image.picture().at(16, 16).x, 0.1f);
     EXPECT_EQ(image.picture().at(16, 16).y, 0.0f);
 }
@@ -166,7 +166,7 @@ TEST(Shadow, OfASlabIsItsTransmittance) {
     camera.target = Float3(0.8f, -0.6f, 0.0f);
     camera.fieldOfViewDegrees = 20;
     camera.width = camera.height = 65;
-    const Image image = shade(queue(), scene, camera, Shadow{.method = {.resolution = 32}, .ground = {.height = -0.6f, .automatic = false}, .samples = 1});
+    const Image image = shade(queue(), scene, camera, Shadow{.method = Planes{.resolution = 32}, .ground = {.height = -0.6f, .automatic = false}, .samples = 1});
     // Straight through: (1 - F)^2 exp(-sigma d) under the box, 1 beside it. Tolerance as for the slab above.
     // Rate: nine in ten shadowed pixels; at the slab's edges voxels hold the average of two faces.
     const double expected = (1 - f) * (1 - f) * kept;
@@ -186,7 +186,7 @@ TEST(Shadow, BehindOpaqueThingsIsDark) {
     Scene scene = sceneOf(makeShape("sphere"), 1.5f);
     scene.materials[0].transmission = 0;
     scene.light.toLight = Float3(0.2f, 1, 0.1f);
-    const Image image = shade(queue(), scene, Camera::around(scene.mesh.bounds(), 0, 40, 64, 64), Shadow{.method = {.resolution = 32}, .samples = 1});
+    const Image image = shade(queue(), scene, Camera::around(scene.mesh.bounds(), 0, 40, 64, 64), Shadow{.method = Planes{.resolution = 32}, .samples = 1});
     std::size_t dark = 0, lit = 0;
     for (const Float4& p : image.picture().pixels) {
         dark += p.w == 1 && p.x == 0;
@@ -201,13 +201,13 @@ TEST(Glass, SaysWhenRaysLeaveAnOpenMesh) {
     Mesh open = makeShape("sphere");
     open.indices.resize(open.indices.size() / 2);
     Scene scene = sceneOf(open, 1.3f);
-    EXPECT_GT(shade(queue(), scene, Camera::around(open.bounds(), 0, 30, 32, 32), Glass{.method = {.resolution = 32}, .samples = 1}).report().lostRays, 0u);
+    EXPECT_GT(shade(queue(), scene, Camera::around(open.bounds(), 0, 30, 32, 32), Glass{.method = Planes{.resolution = 32}, .samples = 1}).report().lostRays, 0u);
 }
 
 TEST(Glass, TwiceIsTheSameAndTakesNothingNew) {
     Scene scene = sceneOf(makeShape("torus"), 1.5f, 0.8f);
     const Camera camera = Camera::around(scene.mesh.bounds(), 30, 20, 40, 40);
-    const Glass effect{.method = {.resolution = 48}};
+    const Glass effect{.method = Planes{.resolution = 48}};
     const std::vector<Float4> first = shade(queue(), scene, camera, effect).picture().pixels;
     const Counters before = queue().counters();
     const Image again = shade(queue(), scene, camera, effect);
@@ -221,13 +221,13 @@ TEST(Glass, TwiceIsTheSameAndTakesNothingNew) {
 TEST(Glass, RefusesWhatItCannotDo) {
     Scene scene = sceneOf(makeShape("box"), 1.5f);
     const Camera camera = frontal();
-    EXPECT_THROW(shade(queue(), scene, camera, Glass{.method = {.resolution = 4}}), Error);
+    EXPECT_THROW(shade(queue(), scene, camera, Glass{.method = Planes{.resolution = 4}}), Error);
     EXPECT_THROW(shade(queue(), scene, camera, Glass{.samples = 5}), Error);
     scene.mesh.materials.assign(scene.mesh.triangleCount(), 3);
-    EXPECT_THROW(shade(queue(), scene, camera, Glass{.method = {.resolution = 16}}), Error);
+    EXPECT_THROW(shade(queue(), scene, camera, Glass{.method = Planes{.resolution = 16}}), Error);
     scene.mesh.materials.clear();
     scene.light.toLight = Float3(0.0f);
-    EXPECT_THROW(shade(queue(), scene, camera, Glass{.method = {.resolution = 16}}), Error);
+    EXPECT_THROW(shade(queue(), scene, camera, Glass{.method = Planes{.resolution = 16}}), Error);
 }
 
 TEST(SunOf, IsTheBrightestPartOfTheMap) {

@@ -165,8 +165,9 @@ TEST(Bricks, GiveTheSamePictures) {
         const Voxels voxels = voxelize(queue(), scene.mesh, grid, Conservative{.channels = Channel::count | Channel::normal});
         std::vector<std::vector<Float4>> all;
         const auto add = [&](const Image& image) { all.push_back(image.picture().pixels); };
-        add(shade(queue(), scene, camera, Glass{.method = {.resolution = 40}, .samples = 1}));
-        add(shade(queue(), scene, camera, Shadow{.method = {.resolution = 40}, .samples = 1}));
+        add(shade(queue(), scene, camera, Glass{.method = Planes{.resolution = 40}, .samples = 1}));
+        add(shade(queue(), scene, camera, Glass{.method = Exact{.resolution = 40}, .samples = 1}));
+        add(shade(queue(), scene, camera, Shadow{.method = Planes{.resolution = 40}, .samples = 1}));
         add(shade(queue(), voxels, camera, Boxes{.samples = 1}));
         add(shade(queue(), voxels, camera, Boxes{.colour = BoxColour::count, .samples = 1}));
         add(shade(queue(), voxels, camera, Boxes{.colour = BoxColour::difference, .other = &other, .samples = 1}));
