@@ -31,6 +31,8 @@ ERROR_TEXT = {
     "missing": "missing voxels, share of all touched cells",
     "missingThin": "missing voxels, share of the thin surface",
     "extra": "extra voxels, share of all touched cells",
+    "wrong": "wrong pixels, share of those of glass",
+    "wrongStable": "wrong pixels, share of the stable ones of glass",
 }
 
 
@@ -92,7 +94,7 @@ def area(resolution, resolutions):
     return 28 if len(resolutions) < 2 else 12 + 60 * resolutions.index(resolution) / (len(resolutions) - 1)
 
 
-def draw_panel(axes, points, across, styles, error, resolutions, decades):
+def draw_panel(axes, points, across, styles, error, resolutions, low, high):
     for style in styles.values():
         mine = [p for p in points if p.method == style["method"]]
         plain = sorted((p for p in mine if not p.option), key=lambda p: p.resolution)
@@ -112,8 +114,8 @@ def draw_panel(axes, points, across, styles, error, resolutions, decades):
         edge = front([p for p in points if p.resolution == resolution and not p.native], error)
         axes.plot([across.at(p) for p in edge], [p.kernel_ms for p in edge], color="#222222", linewidth=1.0, zorder=2.5)
     axes.set_yscale("log")
+    decades = math.log10(high / low)
     if decades < 1:  # a small difference is to look small
-        low, high = min(p.kernel_ms for p in points), max(p.kernel_ms for p in points)
         room = math.sqrt(10 * low / high)
         axes.set_ylim(low / room, high * room)
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
@@ -133,6 +135,8 @@ def main():
     options = parser.parse_args()
 
     points, machine = records.read(options.files)
+    if not any(options.error in p.errors for p in points) and any("wrong" in p.errors for p in points):
+        options.error = "wrong"
     points = [p for p in points if options.error in p.errors and p.kernel_ms > 0]
     if options.mesh:
         points = [p for p in points if p.mesh in options.mesh.split(",")]
@@ -161,18 +165,18 @@ def main():
     figure.get_layout_engine().set(rect=(0, 0, inner, upper))
     across = Across(points, methods, options.error)
     times = [p.kernel_ms for p in points]
-    decades = math.log10(max(times) / min(times))
     for index, axes in enumerate(grid.flat):
         if index >= len(meshes):
             axes.axis("off")
             continue
         mine = [p for p in points if p.mesh == meshes[index]]
-        draw_panel(axes, mine, across, styles, options.error, resolutions, decades)
+        draw_panel(axes, mine, across, styles, options.error, resolutions, min(times), max(times))
         axes.set_title(f"{meshes[index]}: {mine[0].triangles:,} triangles".replace(",", " "), fontsize=9.5)
         axes.tick_params(labelsize=8)
         # With panels missing from the last row, the ones above them keep their own ticks.
         if index + columns >= len(meshes):
             axes.tick_params(labelbottom=True)
+    glass = options.error in ("wrong", "wrongStable")
     family = "Solid" if all(method.startswith("solid") for method in methods) else "Surface"
     text = ERROR_TEXT[options.error].replace("touched cells", "touched cells" if family == "Surface" else "cells inside")
     figure.supxlabel(f"\N{LEFTWARDS ARROW} better    {text}", x=inner / 2, fontsize=9.5)
@@ -193,7 +197,7 @@ def main():
                                   label=f"resolution {resolution}"))
     figure.legend(handles=entries, loc="upper left", bbox_to_anchor=(inner, upper), fontsize=8.5, frameon=False, labelspacing=0.6)
     resolution = "" if several else f"longest axis {points[0].resolution} voxels; "
-    figure.text(0.12 / width, 1 - 0.1 / height, f"{family} voxelization: error against time", va="top", fontsize=11.5, weight="bold")
+    figure.text(0.12 / width, 1 - 0.1 / height, "Glass: wrong pixels against time of a frame" if glass else f"{family} voxelization: error against time", va="top", fontsize=11.5, weight="bold")
     figure.text(0.12 / width, 1 - 0.36 / height, resolution + records.machine_text(machine), va="top", fontsize=8, color="#555555")
     figure.savefig(options.output, dpi=150, metadata={"Date": None} if options.output.endswith(".svg") else None)
 

@@ -22,7 +22,7 @@ class Point:
         return self.method.startswith("native_")
 
 
-ERRORS = ("missing", "extra", "missingThin", "leaks", "watertight")
+ERRORS = ("missing", "extra", "missingThin", "leaks", "watertight", "wrong", "wrongStable")
 
 
 def _from_benchmark(document):
