@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -124,14 +125,18 @@ public:
         if (const auto found = errors_.find(name); found != errors_.end()) return found->second;
         const bool solid = kFamily == Family::solidVoxels;
         const reference::Truth thin = solid ? reference::Truth{VoxelBits(grid), VoxelBits(grid)} : reference::thin(loaded.mesh, grid);
-        const VoxelBits inside = solid ? reference::solid(loaded.mesh, grid) : VoxelBits(grid);
-        const reference::Truth touched = solid ? reference::Truth{inside, inside} : reference::conservative(loaded.mesh, grid);
+        const MeshReport report = solid ? inspect(loaded.mesh) : MeshReport();
+        const reference::Truth touched =
+            solid ? reference::winding(loaded.mesh, grid, 0).inside : reference::conservative(loaded.mesh, grid);
         for (const auto& [member, bits] : groups_.at(group)) {
             const VoxelBits result = bits(*this, loaded, grid);
             const VoxelDifference difference = compareVoxels(result, touched.certain, touched.possible);
             benchmark::UserCounters& counters = errors_[member];
             counters["missing"] = difference.missingShare();
             counters["extra"] = difference.extraShare();
+            if (solid && report.closed())
+                counters["volumeError"] =
+                    std::abs(double(result.occupied()) * std::pow(double(grid.edge()), 3) / std::abs(report.signedVolume) - 1);
             if (!solid) {
                 const Watertight tight = checkWatertight(result, thin.certain);
                 counters["missingThin"] = compareVoxels(result, thin.certain, thin.possible).missingShare();

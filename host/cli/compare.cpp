@@ -140,16 +140,17 @@ int runCompare(const Options& options) {
     }
 
     const Truths truth = bar.wait("the truth, in double precision", [&] { return truths(mesh, grid); });
-    std::optional<VoxelBits> inside;  // the truth of solids
+    std::optional<reference::Truth> inside;  // the truth of solids
     const auto score = [&](Json& record, const VoxelBits& bits) {
         const std::string method = record["method"];
         const Method* row = findMethod(method);
         if (row != nullptr && row->family == Family::solidVoxels && !inside)
-            inside = bar.wait("the truth, in double precision", [&] { return reference::solid(mesh, grid); });
+            inside = bar.wait("the truth, in double precision", [&] { return reference::winding(mesh, grid, 0).inside; });
         bar.wait("comparing " + method, [&] {
             if (row != nullptr && row->family == Family::solidVoxels)
                 // What holds of surfaces does not concern it: a solid has no wall to leak through.
-                addErrors(record, compareVoxels(bits, *inside, *inside), compareVoxels(bits, *inside, *inside), Watertight{});
+                addErrors(record, compareVoxels(bits, inside->certain, inside->possible), compareVoxels(bits, inside->certain, inside->possible),
+                          Watertight{});
             else
                 addErrors(record, compareVoxels(bits, truth.certain, truth.possible),
                           compareVoxels(bits, truth.certainThin, truth.possibleThin), checkWatertight(bits, truth.certainThin));

@@ -126,6 +126,7 @@ Json record(const VoxelReport& report) {
             {"skippedTriangles", report.skippedTriangles},
             {"outsideTriangles", report.outsideTriangles},
             {"openColumns", report.openColumns},
+            {"guessedCells", report.guessedCells},
             {"grid", vectorRecord(report.grid)},
             {"occupied", report.occupied},
             {"bricks", report.bricks},

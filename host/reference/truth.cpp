@@ -24,6 +24,8 @@
 #include <cmath>
 #include <exception>
 #include <mutex>
+#include <numbers>
+#include <numeric>
 #include <string>
 #include <thread>
 #include <vector>
@@ -357,8 +359,12 @@ Range columnsOf(bool perspective, const std::array<double, 3>& x, const std::arr
 
 namespace {
 
-/// Calls hit(column, row, slice coordinate) for every crossing of the line of a column, of triangles that are not all outside the slices
-/// or, with everyDepth, of all; by many threads at a time.
+/// +1 where edge a to b crosses upward in y beyond the column, -1 downward.
+int senseOf(double ra, double qa, double rb, double qb) { return crosses(ra, qa, rb, qb) ? (qa <= 0 ? 1 : -1) : 0; }
+
+/// Calls hit(column, row, slice coordinate, triangle, sense) for every crossing of the line of a column, of triangles that are not all
+/// outside the slices or, with everyDepth, of all; by many threads at a time. Sense: +1 for a triangle whose corners are seen
+/// counterclockwise with x to the right and y up, else -1.
 template <class Hit>
 void scanColumns(const MeshView& mesh, const Grid& grid, bool everyDepth, const Hit& hit) {
     const vitrail_GridDesc& g = grid.desc();
@@ -387,7 +393,8 @@ void scanColumns(const MeshView& mesh, const Grid& grid, bool everyDepth, const 
                     double z = v[0].z + (V * (v[1].z - v[0].z) + W * (v[2].z - v[0].z)) / ((U + V) + W);
                     if (!(z >= lowest)) z = lowest;
                     if (z > highest) z = highest;
-                    hit(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), z);
+                    const int sense = senseOf(r[0], q[0], r[1], q[1]) + senseOf(r[1], q[1], r[2], q[2]) + senseOf(r[2], q[2], r[0], q[0]);
+                    hit(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), z, t, sense);
                 }
             }
         }
@@ -399,7 +406,7 @@ void scanColumns(const MeshView& mesh, const Grid& grid, bool everyDepth, const 
 VoxelBits sampled(const MeshView& mesh, const Grid& grid) {
     VoxelBits bits(grid);
     const double depth = grid.size().z;
-    scanColumns(mesh, grid, false, [&](std::uint32_t i, std::uint32_t j, double z) {
+    scanColumns(mesh, grid, false, [&](std::uint32_t i, std::uint32_t j, double z, std::size_t, int) {
         if (z < 0 || z > depth) return;
         mark(bits, i, j, static_cast<std::uint32_t>(z == depth ? depth - 1 : std::floor(z)));
     });
@@ -410,7 +417,7 @@ VoxelBits solid(const MeshView& mesh, const Grid& grid) {
     const Uint3 size = grid.size();
     std::vector<std::vector<double>> crossings(std::size_t(size.x) * size.y);
     std::mutex mutex;
-    scanColumns(mesh, grid, true, [&](std::uint32_t i, std::uint32_t j, double z) {
+    scanColumns(mesh, grid, true, [&](std::uint32_t i, std::uint32_t j, double z, std::size_t, int) {
         const std::lock_guard lock(mutex);
         crossings[std::size_t(j) * size.x + i].push_back(z);
     });
@@ -426,6 +433,191 @@ VoxelBits solid(const MeshView& mesh, const Grid& grid) {
             }
         }
     return bits;
+}
+
+// ---- slicemaps -------------------------------------------------------------------------------------------------------------
+
+std::vector<bool> slicemapInner(const std::vector<bool>& front, const std::vector<bool>& back) {
+    enum class State { outside, inside, unclear } state = State::outside;
+    std::vector<bool> inner(front.size(), false);
+    std::size_t first = 0;  // of the empty slices whose state is unclear
+    for (std::size_t i = 0; i < front.size(); ++i) {
+        if (!front[i] && !back[i]) {
+            inner[i] = state == State::inside;
+            continue;
+        }
+        if (state == State::unclear && !front[i])
+            for (std::size_t k = first; k < i; ++k) inner[k] = true;
+        inner[i] = true;
+        state = front[i] && back[i] ? State::unclear : front[i] ? State::inside : State::outside;
+        first = i + 1;
+    }
+    return inner;
+}
+
+namespace {
+
+/// -1 where right, up and along the columns make a left-handed frame.
+int handOf(const Grid& grid) {
+    const vitrail_GridDesc& d = grid.desc();
+    const Double3 x(d.axisX.x, d.axisX.y, d.axisX.z), y(d.axisY.x, d.axisY.y, d.axisY.z), z(d.axisZ.x, d.axisZ.y, d.axisZ.z);
+    return !grid.isBox() && glm::dot(glm::cross(x, y), z) < 0 ? -1 : 1;
+}
+
+}  // namespace
+
+VoxelBits solidSlicemap(const MeshView& mesh, const Grid& grid) {
+    const Uint3 size = grid.size();
+    const int hand = handOf(grid);
+    VoxelBits front(grid), back(grid), bits(grid);
+    const double depth = size.z;
+    scanColumns(mesh, grid, false, [&](std::uint32_t i, std::uint32_t j, double z, std::size_t, int sense) {
+        if (z < 0 || z > depth) return;
+        mark(hand * sense < 0 ? front : back, i, j, static_cast<std::uint32_t>(z == depth ? depth - 1 : std::floor(z)));
+    });
+    std::vector<bool> f(size.z), b(size.z);
+    for (std::uint32_t j = 0; j < size.y; ++j)
+        for (std::uint32_t i = 0; i < size.x; ++i) {
+            for (std::uint32_t k = 0; k < size.z; ++k) {
+                f[k] = front.at(i, j, k);
+                b[k] = back.at(i, j, k);
+            }
+            const std::vector<bool> inner = slicemapInner(f, b);
+            for (std::uint32_t k = 0; k < size.z; ++k)
+                if (inner[k]) bits.set(i, j, k);
+        }
+    return bits;
+}
+
+// ---- winding ---------------------------------------------------------------------------------------------------------------
+
+double windingNumber(const MeshView& mesh, const Double3& at) {
+    double sum = 0;
+    for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
+        std::array<Float3, 3> p;
+        if (!cornersOf(mesh, t, p)) continue;
+        const std::array<Double3, 3> v{Double3(p[0]) - at, Double3(p[1]) - at, Double3(p[2]) - at};
+        const double a = glm::length(v[0]), b = glm::length(v[1]), c = glm::length(v[2]);
+        sum += std::atan2(glm::dot(v[0], glm::cross(v[1], v[2])),
+                          a * b * c + glm::dot(v[0], v[1]) * c + glm::dot(v[1], v[2]) * a + glm::dot(v[2], v[0]) * b);
+    }
+    return sum / (2 * std::numbers::pi);
+}
+
+namespace {
+
+struct OpenEdge {
+    Double3 from, to;
+    int times;
+};
+
+/// Which triangles belong to parts, connected through edges, that have an open edge, and these edges.
+struct Parts {
+    std::vector<bool> open;
+    std::vector<OpenEdge> edges;
+};
+
+Parts partsOf(const MeshView& mesh) {
+    using Ends = std::array<float, 6>;
+    struct Run {
+        Ends ends;
+        std::size_t triangle;
+        int net;
+    };
+    std::vector<Run> runs;
+    for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
+        std::array<Float3, 3> p;
+        if (!cornersOf(mesh, t, p)) continue;
+        for (int k = 0; k < 3; ++k) {
+            const Float3 a = p[k] + 0.0f, b = p[(k + 1) % 3] + 0.0f;  // -0 to +0
+            const Ends forward{a.x, a.y, a.z, b.x, b.y, b.z}, backward{b.x, b.y, b.z, a.x, a.y, a.z};
+            if (a != b) runs.push_back(forward < backward ? Run{forward, t, 1} : Run{backward, t, -1});
+        }
+    }
+    std::sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.ends < b.ends; });
+    std::vector<std::size_t> parent(mesh.triangleCount());
+    std::iota(parent.begin(), parent.end(), std::size_t(0));
+    const auto root = [&](std::size_t t) {
+        while (parent[t] != t) t = parent[t] = parent[parent[t]];
+        return t;
+    };
+    Parts parts{std::vector<bool>(mesh.triangleCount(), false), {}};
+    std::vector<std::size_t> atOpen;
+    for (std::size_t i = 0; i < runs.size();) {
+        const std::size_t first = i;
+        int net = 0;
+        for (; i < runs.size() && runs[i].ends == runs[first].ends; ++i) {
+            net += runs[i].net;
+            parent[root(runs[i].triangle)] = root(runs[first].triangle);
+        }
+        if (net == 0) continue;
+        const Ends& e = runs[first].ends;
+        parts.edges.push_back({Double3(e[0], e[1], e[2]), Double3(e[3], e[4], e[5]), net});
+        atOpen.push_back(runs[first].triangle);
+    }
+    std::vector<bool> openRoot(mesh.triangleCount(), false);
+    for (const std::size_t t : atOpen) openRoot[root(t)] = true;
+    for (std::size_t t = 0; t < mesh.triangleCount(); ++t) parts.open[t] = openRoot[root(t)];
+    return parts;
+}
+
+}  // namespace
+
+// The winding number of the open parts changes by one at a crossing of the column; beside that only with the strips that reach from their
+// open edges along the column to infinity, beyond its end: mesh and strips are closed, nothing is around its beginning, and it crosses no strip.
+Winding winding(const MeshView& mesh, const Grid& grid, unsigned every) {
+    const Uint3 size = grid.size();
+    const Parts parts = partsOf(mesh);
+    const int hand = handOf(grid);
+    constexpr double kEffort = 5e8;  // cells times open edges
+    if (every == 0) every = 1 + static_cast<unsigned>(double(grid.voxelCount()) * double(parts.edges.size()) / kEffort);
+    struct Crossing {
+        double z;
+        int step;
+        bool open;
+    };
+    std::vector<std::vector<Crossing>> crossings(std::size_t(size.x) * size.y);
+    std::mutex mutex;
+    scanColumns(mesh, grid, true, [&](std::uint32_t i, std::uint32_t j, double at, std::size_t t, int sense) {
+        const std::lock_guard lock(mutex);
+        crossings[std::size_t(j) * size.x + i].push_back({at, -hand * sense, parts.open[t]});
+    });
+    Winding result{{VoxelBits(grid), VoxelBits(grid)}, VoxelBits(grid)};
+    inParallel(crossings.size(), 8, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t column = begin; column < end; ++column) {
+            const auto i = static_cast<std::uint32_t>(column % size.x), j = static_cast<std::uint32_t>(column / size.x);
+            if (column % every != 0) {
+                for (std::uint32_t k = 0; k < size.z; ++k) mark(result.inside.possible, i, j, k);
+                continue;
+            }
+            const Double3 along = glm::normalize(grid.toWorld(Double3(i + 0.5, j + 0.5, 1)) - grid.toWorld(Double3(i + 0.5, j + 0.5, 0)));
+            for (std::uint32_t k = 0; k < size.z; ++k) {
+                int closed = 0;
+                double open = 0;
+                for (const Crossing& c : crossings[column])
+                    if (c.z < k + 0.5) {
+                        if (c.open)
+                            open += c.step;
+                        else
+                            closed += c.step;
+                    }
+                const Double3 at = grid.toWorld(Double3(i + 0.5, j + 0.5, k + 0.5));
+                double strips = 0;
+                for (const OpenEdge& e : parts.edges) {
+                    const Double3 a = e.from - at, b = e.to - at;
+                    const double la = glm::length(a), lb = glm::length(b);
+                    strips += e.times * std::atan2(glm::dot(b, glm::cross(a, along)),
+                                                   la * lb + glm::dot(a, b) + glm::dot(a, along) * lb + glm::dot(b, along) * la);
+                }
+                open -= strips / (2 * std::numbers::pi);
+                const double all = std::abs(closed + open);
+                if (closed > 0 || all > 0.5 + kWindingTie) mark(result.inside.certain, i, j, k);
+                if (closed > 0 || all > 0.5 - kWindingTie) mark(result.inside.possible, i, j, k);
+                if (closed <= 0 && std::abs(all - std::round(all)) > 0.25) mark(result.guessed, i, j, k);
+            }
+        }
+    });
+    return result;
 }
 
 }  // namespace reference

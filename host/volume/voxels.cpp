@@ -183,6 +183,7 @@ const VoxelReport& Voxels::report() const {
             report.skippedTriangles = status[detail::kStatusSkipped];
             report.outsideTriangles = status[detail::kStatusOutside];
             report.openColumns = status[detail::kStatusOpen];
+            report.guessedCells = status[detail::kStatusGuessed];
         }
         state_->report = report;
     }

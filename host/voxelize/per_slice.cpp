@@ -10,7 +10,7 @@ namespace {
 void markPerSlice(detail::Pass& pass, const detail::MarkChannels* channels) {
     const vitrail_GridDesc desc = pass.out.grid.desc();
     const std::string step = detail::markStep("per_slice", channels);
-    const detail::Program program{"baselines", pass.program.options};
+    const detail::Program program{"baselines/per_slice", pass.program.options};
     const Buffer<std::uint32_t> uncounted;
     const std::uint32_t slices = pass.out.grid.size().z;
     detail::withMarkBuffers(pass, channels, [&](const auto&... buffers) {

@@ -67,6 +67,13 @@ void forTriangles(Pass& pass, const char* step, bool second, const std::function
     }
 }
 
+std::uint32_t mirrored(const Grid& grid) {
+    if (grid.isBox()) return 0;
+    const vitrail_GridDesc& d = grid.desc();
+    const Double3 x(d.axisX.x, d.axisX.y, d.axisX.z), y(d.axisY.x, d.axisY.y, d.axisY.z), z(d.axisZ.x, d.axisZ.y, d.axisZ.z);
+    return glm::dot(glm::cross(x, y), z) < 0 ? 1 : 0;
+}
+
 namespace {
 
 std::uint64_t meshBytes(const MeshView& mesh, bool materials) {
@@ -99,18 +106,19 @@ std::uint64_t bytesOf(const MeshInput& mesh, const Grid& grid, Channel channels,
 }
 
 /// From the memory that all tiles would take.
-bool inBricks(const Queue& queue, const MeshInput& mesh, const Grid& grid) {
+bool inBricks(const Queue& queue, const MeshInput& mesh, const Grid& grid, const Scratch& scratch) {
     const std::uint64_t dense = grid.wordCount() * 4;
+    if (!scratch.bricks) return false;
     if (queue.storage() != Storage::automatic) return queue.storage() == Storage::bricks;
-    return dense > kDenseMost || dense > queue.deviceInfo().maxBufferBytes || bytesOf(mesh, grid, Channel::none, false) > queue.memoryLimit();
+    return dense > kDenseMost || dense > queue.deviceInfo().maxBufferBytes || bytesOf(mesh, grid, Channel::none, false) + scratch.bytes > queue.memoryLimit();
 }
 
 /// Throws Error (outOfMemory) where the call cannot go on, before anything is taken. Of bricks only the directory is known by then.
-void refuse(const Queue& queue, const MeshInput& mesh, const Grid& grid, const char* name, bool bricks) {
+void refuse(const Queue& queue, const MeshInput& mesh, const Grid& grid, const char* name, bool bricks, std::uint64_t scratchBytes) {
     const DeviceInfo device = queue.deviceInfo();
     const std::uint64_t limit = queue.memoryLimit(), most = device.maxBufferBytes, dense = grid.wordCount() * 4;
     const std::uint64_t buffer = bricks ? groupsOfTiles(grid) * 8 : dense;
-    const std::uint64_t need = bytesOf(mesh, grid, Channel::none, false) - dense + (bricks ? groupsOfTiles(grid) * 12 : dense);
+    const std::uint64_t need = scratchBytes + bytesOf(mesh, grid, Channel::none, false) - dense + (bricks ? groupsOfTiles(grid) * 12 : dense);
     constexpr std::uint64_t kTilesMost = 0x7fffffff;  // kernels count them in 31 bits
     const std::uint64_t tiles = dense / (4 * VITRAIL_WORDS_PER_TILE);
     std::string what;
@@ -142,14 +150,14 @@ std::uint64_t estimateVoxelizer(const MeshInput& mesh, const Grid& grid, Channel
 }
 
 Voxels runVoxelizer(Queue& queue, const MeshInput& input, const Grid& grid, Channel channels, const char* name,
-                    const std::string& options, const std::function<void(Pass&, const MarkChannels*)>& mark) {
+                    const std::string& options, const std::function<void(Pass&, const MarkChannels*)>& mark, const Scratch& scratch) {
     if (input.triangleCount() == 0) throw Error(ErrorCode::badInput, {std::string(name) + ": the mesh has no triangles", "", "", "a mesh with faces"});
     const Method& row = *findMethod(name);
     if (!grid.isBox() && (!row.cameraGrids && grid.desc().kind != VITRAIL_GRID_ORTHOGRAPHIC))
         throw Error(ErrorCode::unsupported, {std::string(name) + " works on box and orthographic grids; this one is perspective", "", "",
                                              "sampled or points"});
-    const bool bricks = inBricks(queue, input, grid);
-    refuse(queue, input, grid, name, bricks);
+    const bool bricks = inBricks(queue, input, grid, scratch);
+    refuse(queue, input, grid, name, bricks, scratch.bytes);
 
     Call call(queue, std::string("voxelizing ") + std::to_string(input.triangleCount()) + " triangles");
     call.step(name, 0.0);

@@ -80,10 +80,16 @@ struct MarkChannels {
     const Buffer<std::uint32_t>*list = nullptr, *cursor = nullptr;  // triangles of each voxel, and where its next one goes
 };
 
+/// What `mark` takes itself.
+struct Scratch {
+    std::uint64_t bytes = 0;  ///< a call that would pass the memory limit with them is refused
+    bool bricks = true;       ///< whether it can work on bricks
+};
+
 /// Checks, uploads, takes memory, and calls `mark(pass, null)` for the bits and, with channels, `mark(pass, channels)`. Where bits lie in
 /// bricks it calls `mark(pass, null)` once before with no pass.out.bits, to find the tiles that need one.
 Voxels runVoxelizer(Queue& queue, const MeshInput& mesh, const Grid& grid, Channel channels, const char* name, const std::string& options,
-                    const std::function<void(Pass&, const MarkChannels*)>& mark);
+                    const std::function<void(Pass&, const MarkChannels*)>& mark, const Scratch& scratch = {});
 
 /// Bytes of runVoxelizer: upload, bits, task list, and with channels a rank and one entry each for the voxels of eight faces of the grid.
 std::uint64_t estimateVoxelizer(const MeshInput& mesh, const Grid& grid, Channel channels);
@@ -108,6 +114,9 @@ void withMarkBuffers(Pass& pass, const MarkChannels* channels, Run&& run) {
 inline std::string markStep(const char* method, const MarkChannels* channels) {
     return std::string(method) + (channels != nullptr ? ": channels" : ": bits");
 }
+
+/// 1 where right, up and along the columns make a left-handed frame, in which a surface is seen mirrored.
+std::uint32_t mirrored(const Grid& grid);
 
 /// Launches <method>_mark over the triangles and then over the tasks they left: sets bits where `channels` is null, else adds to them. Its
 /// first argument is the grid, then `options`, then MARK_PARAMETERS of kernels/lib/mark.cl.

@@ -13,6 +13,11 @@ INLINE real point_axis(const Point d, const vitrail_float4 axis) {
     return d.x * REAL(axis.x) + d.y * REAL(axis.y) + d.z * REAL(axis.z);
 }
 
+INLINE Point point_cross(const Point a, const Point b) {
+    const Point c = {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+    return c;
+}
+
 // Voxel coordinates; a perspective grid gives x = y = 0 for points at or behind the eye, whose z is negative then.
 INLINE Point grid_to_voxel(const vitrail_GridDesc* grid, float px, float py, float pz) {
     const Point d = {REAL(px) - REAL(grid->origin.x), REAL(py) - REAL(grid->origin.y), REAL(pz) - REAL(grid->origin.z)};
@@ -40,7 +45,33 @@ INLINE Point grid_to_voxel(const vitrail_GridDesc* grid, float px, float py, flo
     return v;
 }
 
-// The same for eight points.
+// World space of voxel coordinates, as Grid::toWorld.
+INLINE Point grid_to_world(const vitrail_GridDesc* grid, Point v) {
+    const Point o = {REAL(grid->origin.x), REAL(grid->origin.y), REAL(grid->origin.z)};
+    Point p;
+    if (grid->kind == VITRAIL_GRID_BOX) {
+        const real edge = REAL(grid->extent.x);
+        p.x = o.x + v.x * edge;
+        p.y = o.y + v.y * edge;
+        p.z = o.z + v.z * edge;
+        return p;
+    }
+    const real depth = REAL(grid->extent.z) + v.z / REAL(grid->size.z) * (REAL(grid->extent.w) - REAL(grid->extent.z));
+    const real spread = grid->kind == VITRAIL_GRID_PERSPECTIVE ? depth : REAL(1);
+    const real right = (v.x / REAL(grid->size.x) * REAL(2) - REAL(1)) * spread * REAL(grid->extent.x);
+    const real up = (v.y / REAL(grid->size.y) * REAL(2) - REAL(1)) * spread * REAL(grid->extent.y);
+    const Point x = {REAL(grid->axisX.x), REAL(grid->axisX.y), REAL(grid->axisX.z)},
+                y = {REAL(grid->axisY.x), REAL(grid->axisY.y), REAL(grid->axisY.z)},
+                z = {REAL(grid->axisZ.x), REAL(grid->axisZ.y), REAL(grid->axisZ.z)};
+    const Point yz = point_cross(y, z), zx = point_cross(z, x), xy = point_cross(x, y);
+    const real whole = x.x * yz.x + x.y * yz.y + x.z * yz.z;
+    p.x = o.x + (yz.x * right + zx.x * up + xy.x * depth) / whole;
+    p.y = o.y + (yz.y * right + zx.y * up + xy.y * depth) / whole;
+    p.z = o.z + (yz.z * right + zx.z * up + xy.z * depth) / whole;
+    return p;
+}
+
+// The same as grid_to_voxel for eight points.
 INLINE void grid_to_voxel8(const vitrail_GridDesc* grid, float8 px, float8 py, float8 pz, real8* x, real8* y, real8* z) {
     if (grid->kind == VITRAIL_GRID_BOX) {
         *x = (LANES_REAL(px) - REAL(grid->origin.x)) / REAL(grid->extent.x);

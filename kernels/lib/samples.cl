@@ -317,6 +317,18 @@ INLINE bool samples_row(const vitrail_GridDesc* grid, const Samples* s, int xLea
     return true;
 }
 
+INLINE int samples_edge_sense(real ra, real qa, real rb, real qb) {
+    return samples_crosses(ra, qa, rb, qb) ? (qa <= REAL(0) ? 1 : -1) : 0;
+}
+
+// +1 where the triangle covers column x of the row that `q` is seen from with its corners counterclockwise (x to the right, y up), -1 where
+// clockwise, 0 where it does not. The sum over its edges, so that it vanishes over the triangles of a closed surface, whatever is rounded.
+INLINE int samples_sense(const vitrail_GridDesc* grid, const Samples* s, const Seen* q, int x) {
+    const Seen r =
+        samples_seen(s->perspective, samples_centre(s->perspective, x, grid->size.x, grid->extent.x), s->a.x, s->b.x, s->c.x, s);
+    return samples_edge_sense(r.a, q->a, r.b, q->b) + samples_edge_sense(r.b, q->b, r.c, q->c) + samples_edge_sense(r.c, q->c, r.a, q->a);
+}
+
 // Slice coordinate of the triangle at column x of that row. False when it does not cover the column's centre.
 INLINE bool samples_depth(const vitrail_GridDesc* grid, const Samples* s, const Seen* q, int x, real* depth) {
     const Seen r =

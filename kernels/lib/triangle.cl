@@ -11,6 +11,7 @@
 #define STATUS_SKIPPED 2
 #define STATUS_OUTSIDE 3
 #define STATUS_OPEN 4
+#define STATUS_GUESSED 5
 
 typedef struct {
     Point a, b, c;

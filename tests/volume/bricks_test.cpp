@@ -73,7 +73,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, EveryVoxelizerInBricks, ::testing::Values("con
 TEST(Bricks, AllVoxelizersAreTested) {
     for (const Method& row : methods())
         if (isVoxelizer(row)) {
-            EXPECT_TRUE(std::string(" conservative thin sampled sliced per_slice points solid ").find(" " + std::string(row.name) + " ") !=
+            EXPECT_TRUE(std::string(" conservative thin sampled sliced per_slice points solid solid_winding solid_slicemap ").find(" " + std::string(row.name) + " ") !=
                         std::string::npos)
                 << row.name;
         }
@@ -99,6 +99,16 @@ TEST_P(EveryVoxelizerInBricks, HoldTheSameVoxelsAndChannels) {
                 for (const Grid& grid : test::cameraGrids({Float3(0), Float3(size)}, Uint3(40, 37, 90))) grids.push_back(grid);
             for (const Grid& grid : grids) expectSame(inBricks(mesh, grid, method), voxelize(queue(), mesh, grid, method));
         }
+    }
+}
+
+TEST(Bricks, AreNotForSolidsOfOpenMeshes) {
+    const Mesh mesh = test::octahedron(Float3(0), 1);
+    const Grid grid = Grid::fit(mesh.bounds(), 20);
+    for (const char* name : {"solid_winding", "solid_slicemap"}) {
+        const Voxels voxels = inBricks(mesh, grid, voxelizerByName(name));
+        EXPECT_EQ(voxels.report().bricks, 0u) << name;
+        EXPECT_EQ(voxels.host().words, voxelize(queue(), mesh, grid, voxelizerByName(name)).host().words) << name;
     }
 }
 

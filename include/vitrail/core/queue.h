@@ -28,7 +28,7 @@ enum class Precision {
 enum class Storage {
     automatic,  ///< dense, or in bricks where that would pass 256 MiB, what the device allows in one buffer, or the memory limit
     dense,      ///< for who reads the buffer with code of his own
-    bricks,     ///< memory for the tiles that hold a voxel; triangles are gone over twice
+    bricks,     ///< memory for the tiles that hold a voxel; triangles are gone over twice (solid_winding: dense all the same)
 };
 
 /// Belongs to one thread at a time, as do its workspace and what was made with it. Move-only.

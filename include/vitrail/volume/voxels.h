@@ -52,6 +52,7 @@ struct VoxelReport : CallReport {
     std::uint64_t skippedTriangles = 0;     ///< with an index out of range or a vertex that is not finite: marked nothing
     std::uint64_t outsideTriangles = 0;     ///< wholly outside the grid
     std::uint64_t openColumns = 0;          ///< of a solid: that cross the surface an odd number of times; what is inside them is a guess
+    std::uint64_t guessedCells = 0;         ///< of solid_winding: whose winding number is nearer to a half than to a whole number
     Uint3 grid{0};
     std::uint64_t occupied = 0;
     std::uint64_t bricks = 0;               ///< tiles of 8 x 8 x 32 cells that memory was taken for; 0: all of the grid's

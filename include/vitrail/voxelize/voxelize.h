@@ -12,12 +12,14 @@
 #include <vitrail/voxelize/sampled.h>
 #include <vitrail/voxelize/sliced.h>
 #include <vitrail/voxelize/solid.h>
+#include <vitrail/voxelize/solid_slicemap.h>
+#include <vitrail/voxelize/solid_winding.h>
 #include <vitrail/voxelize/thin.h>
 
 namespace vitrail {
 inline namespace v0 {
 
-using Voxelizer = std::variant<Conservative, Thin, Sampled, Sliced, PerSlice, Points, Solid>;
+using Voxelizer = std::variant<Conservative, Thin, Sampled, Sliced, PerSlice, Points, Solid, SolidWinding, SolidSlicemap>;
 
 /// The voxelizer called `name` with options "safetyFactor=2"; others keep their defaults.
 /// Throws Error (badOption) that lists what there is.
