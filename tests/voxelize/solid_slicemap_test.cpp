@@ -134,7 +134,7 @@ void expectForms(const VoxelBits& front, const VoxelBits& back, const std::strin
     table.write(queue(), makeTable());
     {
         detail::Call call(queue(), "slicemaps");
-        const detail::Program program{"baselines", detail::realOptions(queue())};
+        const detail::Program program{"baselines/solid_slicemap", detail::realOptions(queue())};
         call.launchRange(program, "solid_slicemap_table", std::uint64_t(size.x) * size.y, desc, table, bits, behind, counts);
         call.launchRange(program, "solid_slicemap_evaluate", std::uint64_t(desc.tilesX) * desc.tilesY * 8, desc, bits, behind);
     }
