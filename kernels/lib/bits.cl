@@ -64,21 +64,25 @@ INLINE uint8 bits_masks(int8 first, int8 end) {
     return (ones << as_uint8(from & 31)) & (ones >> as_uint8(-to & 31)) & as_uint8(from < to);
 }
 
-// ORs eight neighbours, the words of a row of a tile. `often`: most of these bits are likely to be there; looking costs less than an
-// atomic then. What it sees may be old: bits only ever appear.
-INLINE void bits_set_row(global uint* words, uint8 mask, bool often) {
-    if (BITS_LOOK && often) mask &= ~*(const global uint8*)words;
+// ORs four neighbours, half a row of a tile. `often`: most of these bits are likely to be there; looking costs less than an atomic then.
+// What it sees may be old: bits only ever appear.
+INLINE void bits_set_half(global uint* words, uint4 mask, bool often) {
+    if (BITS_LOOK && often) mask &= ~*(const global uint4*)words;
 #ifdef cl_khr_int64_extended_atomics
     volatile global ulong* pairs = (volatile global ulong*)words;
-    const ulong4 two = as_ulong4(mask);
+    const ulong2 two = as_ulong2(mask);
     if (two.s0 != 0ul) atom_or(pairs, two.s0);
     if (two.s1 != 0ul) atom_or(pairs + 1, two.s1);
-    if (two.s2 != 0ul) atom_or(pairs + 2, two.s2);
-    if (two.s3 != 0ul) atom_or(pairs + 3, two.s3);
 #else
-    for (int i = 0; i < 8; ++i)
+    for (int i = 0; i < 4; ++i)
         if (((uint*)&mask)[i] != 0u) atomic_or(words + i, ((uint*)&mask)[i]);
 #endif
+}
+
+// The same for eight, a row of a tile.
+INLINE void bits_set_row(global uint* words, uint8 mask, bool often) {
+    bits_set_half(words, mask.lo, often);
+    bits_set_half(words + 4, mask.hi, often);
 }
 
 // ORs bits that are likely to be there.

@@ -6,6 +6,7 @@
 #pragma OPENCL FP_CONTRACT OFF
 
 #define COLUMN_FEW 4  // a triangle over so few columns is smaller than a voxel or two, and its neighbours share most of its cells
+#define COLUMN_SMALL 8  // columns along x and y of a triangle that is done in blocks of four by two
 
 // Where the cells of one triangle go.
 typedef struct {
@@ -70,6 +71,42 @@ INLINE void column_columns(const Runs* runs, int lane, int xLeast, int xMost, in
     }
 }
 
+// The same, by the same numbers, for a triangle at most 31 cells high over few columns: four columns of two rows at a time.
+INLINE void column_blocks(const Runs* runs, int lane, int xLeast, int xMost, int yLeast, int yMost, const Mark* mark, const bool often) {
+    const int x0 = lanes_int_at(&runs->first[0], lane), y0 = lanes_int_at(&runs->first[1], lane), z0 = lanes_int_at(&runs->first[2], lane);
+    const int height = lanes_int_at(&runs->last[2], lane) + 1 - z0;
+    const real planeX = lanes_at(&runs->planeX, lane), planeY = lanes_at(&runs->planeY, lane);
+    const real planeLow = lanes_at(&runs->planeLow, lane), planeHigh = lanes_at(&runs->planeHigh, lane);
+    const uint shift = (uint)z0 & 31u;
+    for (int y = yLeast; y <= yMost; y += 2)
+        for (int x = xLeast & ~3; x <= xMost; x += 4) {
+            const real8 rows = (real8)(0, 0, 0, 0, 1, 1, 1, 1) + LANES_OF(y - y0);
+            const real8 columns = (real8)(0, 1, 2, 3, 0, 1, 2, 3) + LANES_OF(x - x0), next = columns + LANES_OF(1);
+            real8 xLow, xHigh, rowLow, rowHigh, columnLow, columnHigh;
+            run_between(&runs->xOfY, lane, rows, &xLow, &xHigh);
+            run_between(&runs->zOfY, lane, rows, &rowLow, &rowHigh);
+            run_between(&runs->zOfX, lane, columns, &columnLow, &columnHigh);
+            const real8 low = fma(LANES_OF(planeX), columns, fma(LANES_OF(planeY), rows, LANES_OF(planeLow)));
+            const real8 high = fma(LANES_OF(planeX), columns, fma(LANES_OF(planeY), rows, LANES_OF(planeHigh)));
+            const real8 from = lanes_max(lanes_max(low, columnLow), rowLow), to = lanes_min(lanes_min(high, columnHigh), rowHigh);
+            const int8 first = lanes_int(lanes_min(lanes_max(from, LANES_OF(0)), LANES_OF(height)));
+            const int8 end = lanes_int(lanes_min(lanes_max(to, LANES_OF(0)), LANES_OF(height)));
+            // Of whole numbers, column >= floor(xLow) where column + 1 > xLow, and column < floor(xHigh) where column + 1 <= xHigh.
+            const int8 out = LANES_TRUE(xLow >= next) | LANES_TRUE(xHigh < next) | LANES_TRUE(columns < LANES_OF(xLeast - x0)) |
+                             LANES_TRUE(columns > LANES_OF(xMost - x0)) | LANES_TRUE(rows > LANES_OF(yMost - y0));
+            const uint8 ones = (uint8)(0xffffffffu);
+            const uint8 mask = (ones << as_uint8(first)) & ~(ones << as_uint8(end)) & ~as_uint8(out);
+            global uint* one = mark->bits + bits_word(mark->grid, (uint)x, (uint)y, (uint)z0);
+            global uint* two = y < yMost ? mark->bits + bits_word(mark->grid, (uint)x, (uint)y + 1u, (uint)z0) : one;
+            bits_set_half(one, mask.lo << shift, often);
+            bits_set_half(two, mask.hi << shift, often);
+            if (shift + (uint)height > 32u) {
+                bits_set_half(one + VITRAIL_WORDS_PER_TILE, mask.lo >> (32u - shift), often);
+                bits_set_half(two + VITRAIL_WORDS_PER_TILE, mask.hi >> (32u - shift), often);
+            }
+        }
+}
+
 // One of eight triangles, or one block of it when it is big (block >= 0).
 INLINE void column_triangle(bool thin, const Runs* runs, int lane, global const float* positions, global const uint* indices, uint vertexCount,
                                   global const uint* materials, int block, Mark* mark, global uint2* tasks, uint taskCapacity,
@@ -85,6 +122,11 @@ INLINE void column_triangle(bool thin, const Runs* runs, int lane, global const 
     // Within one column a triangle touches every cell of its box.
     if (!thin && !mark->channels && !(state & RUN_CLIPPED) && xLeast == xMost && yLeast == yMost) {
         bits_set_run(&mark->bits, mark->grid, (uint)xLeast, (uint)yLeast, (uint)zLeast, (uint)zMost);
+        return;
+    }
+    const int width = xMost - xLeast + 1, depth = yMost - yLeast + 1;
+    if (!mark->channels && width <= COLUMN_SMALL && depth <= COLUMN_SMALL && zMost - zLeast < 31) {
+        column_blocks(runs, lane, xLeast, xMost, yLeast, yMost, mark, width * depth <= COLUMN_FEW);
         return;
     }
     if (tasks_columns(&xLeast, &xMost, &yLeast, &yMost, block, tasks, taskCapacity, status, mark->triangle)) return;

@@ -78,6 +78,7 @@ INLINE void run_projection(bool thin, Bounds* bounds, const real8 v[3], const re
 // Inverses of the differences of corners in order; 0 for an edge along which u is bound by nothing but the box.
 INLINE void run_inverses(const real8 v[3], real8 inverse[3]) {
     const real8 d[3] = {v[2] - v[0], v[1] - v[0], v[2] - v[1]};
+#pragma unroll
     for (int e = 0; e < 3; ++e) inverse[e] = d[e] > LANES_OF(REAL_PARALLEL) ? LANES_OF(1) / d[e] : LANES_OF(0);
 }
 
@@ -126,6 +127,7 @@ INLINE void run_setup(bool thin, const vitrail_GridDesc* grid, global const floa
                         run_extent(z, grid->size.z, slack, &runs->first[2], &runs->last[2], &clippedZ);
 
     const real8 ox = LANES_REAL(runs->first[0]), oy = LANES_REAL(runs->first[1]), oz = LANES_REAL(runs->first[2]);
+#pragma unroll
     for (int k = 0; k < 3; ++k) {
         x[k] -= ox;
         y[k] -= oy;
@@ -140,6 +142,7 @@ INLINE void run_setup(bool thin, const vitrail_GridDesc* grid, global const floa
     runs->planeX = nx * inverse;
     runs->planeY = ny * inverse;
     real8 offset[3];
+#pragma unroll
     for (int k = 0; k < 3; ++k) offset[k] = fma(-runs->planeX, x[k], fma(-runs->planeY, y[k], z[k]));
     const real8 px = runs->planeX, py = runs->planeY, zero = LANES_OF(0);
     run_strip(thin, lanes_min3(offset[0], offset[1], offset[2]), lanes_max3(offset[0], offset[1], offset[2]), px + py,
@@ -156,12 +159,18 @@ INLINE void run_setup(bool thin, const vitrail_GridDesc* grid, global const floa
     run_projection(thin, &runs->zOfX, x, z, inverses, margin);
 }
 
-// The runs of the triangle in `lane` at eight places v along the axis that bounds what: first and end, within [least, most].
+// The bounds of the triangle in `lane` at eight places v along the axis that bounds what.
+INLINE void run_between(const Bounds* bounds, int lane, real8 v, real8* low, real8* high) {
+    *low = lanes_max(fma(LANES_OF(lanes_at(&bounds->lowSlope[0], lane)), v, LANES_OF(lanes_at(&bounds->low[0], lane))),
+                     fma(LANES_OF(lanes_at(&bounds->lowSlope[1], lane)), v, LANES_OF(lanes_at(&bounds->low[1], lane))));
+    *high = lanes_min(fma(LANES_OF(lanes_at(&bounds->highSlope[0], lane)), v, LANES_OF(lanes_at(&bounds->high[0], lane))),
+                      fma(LANES_OF(lanes_at(&bounds->highSlope[1], lane)), v, LANES_OF(lanes_at(&bounds->high[1], lane))));
+}
+
+// The runs there: first and end, within [least, most].
 INLINE void run_bounds(const Bounds* bounds, int lane, real8 v, real least, real most, int8* first, int8* end) {
-    const real8 low = lanes_max(fma(LANES_OF(lanes_at(&bounds->lowSlope[0], lane)), v, LANES_OF(lanes_at(&bounds->low[0], lane))),
-                                fma(LANES_OF(lanes_at(&bounds->lowSlope[1], lane)), v, LANES_OF(lanes_at(&bounds->low[1], lane))));
-    const real8 high = lanes_min(fma(LANES_OF(lanes_at(&bounds->highSlope[0], lane)), v, LANES_OF(lanes_at(&bounds->high[0], lane))),
-                                 fma(LANES_OF(lanes_at(&bounds->highSlope[1], lane)), v, LANES_OF(lanes_at(&bounds->high[1], lane))));
+    real8 low, high;
+    run_between(bounds, lane, v, &low, &high);
     *first = lanes_int(lanes_min(lanes_max(low, LANES_OF(least)), LANES_OF(most)));
     *end = lanes_int(lanes_min(lanes_max(high, LANES_OF(least)), LANES_OF(most)));
 }

@@ -70,12 +70,14 @@ INLINE int8 triangle_eight(const vitrail_GridDesc* grid, global const float* pos
     float gathered[9][LANES];
     uint corners[3][LANES];
     for (int lane = 0; lane < LANES; ++lane)
+#pragma unroll
         for (int k = 0; k < 3; ++k) {
             const uint vertex = indices[3 * (size_t)triangles[lane] + k], there = vertex < vertexCount ? vertex : 0u;
             corners[k][lane] = vertex;
             for (int axis = 0; axis < 3; ++axis) gathered[3 * k + axis][lane] = positions[3 * (size_t)there + axis];
         }
     int8 good = (int8)(-1);
+#pragma unroll
     for (int k = 0; k < 3; ++k) {
         const float8 px = vload8(0, gathered[3 * k]), py = vload8(0, gathered[3 * k + 1]), pz = vload8(0, gathered[3 * k + 2]);
         good &= (vload8(0, corners[k]) < vertexCount) & isfinite(px) & isfinite(py) & isfinite(pz);
