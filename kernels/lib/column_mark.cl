@@ -5,7 +5,7 @@
 #include "lib/mark.cl"
 #pragma OPENCL FP_CONTRACT OFF
 
-#define COLUMN_FEW 4  // a triangle over so few columns is smaller than a voxel or two, and its neighbours share most of its cells
+#define COLUMN_FEW 4    // a triangle over so few columns is smaller than a voxel or two, and its neighbours share most of its cells
 #define COLUMN_SMALL 8  // columns along x and y of a triangle that is done in blocks of four by two
 
 // Where the cells of one triangle go.
@@ -16,6 +16,13 @@ typedef struct {
     long normal[3];
     uint material, triangle;
 } Mark;
+
+// Marks cells of four columns in a tile.
+INLINE void column_mark_half(const Mark* mark, size_t tile, uint inTile, uint4 mask, const bool often) {
+    global uint* words;
+    if (mark->bits.words || any(mask != 0u))
+        if (bits_open(&mark->bits, tile, &words)) bits_set_half(words + inTile, mask, often);
+}
 
 // Marks slices [first, end) of eight columns, x from a multiple of eight on; zFirst <= them < zEnd.
 INLINE void column_mark_row(const Mark* mark, int x, int y, int8 first, int8 end, int zFirst, int zEnd,
@@ -96,13 +103,15 @@ INLINE void column_blocks(const Runs* runs, int lane, int xLeast, int xMost, int
                              LANES_TRUE(columns > LANES_OF(xMost - x0)) | LANES_TRUE(rows > LANES_OF(yMost - y0));
             const uint8 ones = (uint8)(0xffffffffu);
             const uint8 mask = (ones << as_uint8(first)) & ~(ones << as_uint8(end)) & ~as_uint8(out);
-            global uint* one = mark->bits + bits_word(mark->grid, (uint)x, (uint)y, (uint)z0);
-            global uint* two = y < yMost ? mark->bits + bits_word(mark->grid, (uint)x, (uint)y + 1u, (uint)z0) : one;
-            bits_set_half(one, mask.lo << shift, often);
-            bits_set_half(two, mask.hi << shift, often);
+            const uint odd = y < yMost ? (uint)y + 1u : (uint)y;
+            const size_t one = bits_tile(mark->grid, (uint)x, (uint)y) + ((uint)z0 >> 5);
+            const size_t two = bits_tile(mark->grid, (uint)x, odd) + ((uint)z0 >> 5);
+            const uint inOne = bits_in_tile((uint)x, (uint)y), inTwo = bits_in_tile((uint)x, odd);
+            column_mark_half(mark, one, inOne, mask.lo << shift, often);
+            column_mark_half(mark, two, inTwo, mask.hi << shift, often);
             if (shift + (uint)height > 32u) {
-                bits_set_half(one + VITRAIL_WORDS_PER_TILE, mask.lo >> (32u - shift), often);
-                bits_set_half(two + VITRAIL_WORDS_PER_TILE, mask.hi >> (32u - shift), often);
+                column_mark_half(mark, one + 1, inOne, mask.lo >> (32u - shift), often);
+                column_mark_half(mark, two + 1, inTwo, mask.hi >> (32u - shift), often);
             }
         }
 }
