@@ -1,6 +1,6 @@
-// bench/voxelize.cpp: a family of voxelizers, surfaceVoxels or solidVoxels: every method of methods.h and, of surfaces, the
-// native lines, over meshes and resolutions, in turns. A
-// benchmark is <mesh>/<resolution>/<method>[/<option>=<value>]; its time is kernelMs (of a native line the call), and in the same record are
+// bench/voxelize.cpp: a family of voxelizers, surfaceVoxels or solidVoxels: every method of methods.h, of surfaces the native
+// lines, and, unless --no_peers is given, the packaged peers that are installed, over meshes and resolutions, in turns. A benchmark is
+// <mesh>/<resolution>/<method>[/<option>=<value>]; its time is kernelMs (of a native line or a peer the call), and in the same record are
 // wallMs and, unless --times_only is given, the errors against the truth. Meshes: generated ones, and real ones where VITRAIL_DATA names a
 // folder of them; those with a number behind a plus sign were subdivided so many times.
 #include <benchmark/benchmark.h>
@@ -29,6 +29,7 @@
 #include "context.h"
 #include "native/edge_runs.h"
 #include "native/separating_axis.h"
+#include "peers/peers.h"
 
 namespace {
 
@@ -203,11 +204,22 @@ void benchMethod(benchmark::State& state, Bench& bench, const Case& one, const V
 
 using NativeLine = void (*)(std::span<const float>, std::span<const std::uint32_t>, const native::Grid&, unsigned, native::Bits&);
 
-void runNative(NativeLine line, Bench& bench, const Mesh& mesh, const Grid& grid, native::Bits& bits) {
+native::Grid nativeGrid(const Grid& grid) {
     const Uint3 size = grid.size();
     const Float3 origin = grid.origin();
-    line({&mesh.positions[0].x, mesh.positions.size() * 3}, mesh.indices, {{origin.x, origin.y, origin.z}, grid.edge(), {size.x, size.y, size.z}},
-         bench.threads(), bits);
+    return {{origin.x, origin.y, origin.z}, grid.edge(), {size.x, size.y, size.z}};
+}
+
+std::span<const float> coordinates(const Mesh& mesh) { return {&mesh.positions[0].x, mesh.positions.size() * 3}; }
+
+VoxelBits hostBits(const native::Bits& bits, const Grid& grid) {
+    VoxelBits same(grid);  // of the same layout (native.h)
+    std::copy(bits.words.begin(), bits.words.end(), same.words.begin());
+    return same;
+}
+
+void runNative(NativeLine line, Bench& bench, const Mesh& mesh, const Grid& grid, native::Bits& bits) {
+    line(coordinates(mesh), mesh.indices, nativeGrid(grid), bench.threads(), bits);
 }
 
 void benchNative(benchmark::State& state, Bench& bench, const Case& one, NativeLine line) {
@@ -225,18 +237,31 @@ void benchNative(benchmark::State& state, Bench& bench, const Case& one, NativeL
     }
     const double bytes = double(bits.words.size()) * 4 + double(loaded.mesh.positions.size()) * 12 + double(loaded.mesh.indices.size()) * 4;
     addCounters(state, bench, one, loaded, grid, wallMs, bytes);
+    state.SetLabel("conservative");
 }
 
 VoxelBits nativeBits(NativeLine line, Bench& bench, const Bench::Loaded& loaded, const Grid& grid) {
     native::Bits bits;
     runNative(line, bench, loaded.mesh, grid, bits);
-    VoxelBits same(grid);  // of the same layout (native.h)
-    std::copy(bits.words.begin(), bits.words.end(), same.words.begin());
-    return same;
+    return hostBits(bits, grid);
 }
 
-void add(const std::string& name, std::function<void(benchmark::State&)> run) {
-    benchmark::RegisterBenchmark(name.c_str(), [run = std::move(run)](benchmark::State& state) {
+void benchPeer(benchmark::State& state, Bench& bench, const Case& one, const peers::Peer& peer) {
+    const Bench::Loaded& loaded = bench.mesh(one.input);
+    const Grid grid = Grid::fit(loaded.mesh.bounds(), one.resolution);
+    double wallMs = 0;
+    for (auto _ : state) {
+        const double ms = peer.run({coordinates(loaded.mesh), loaded.mesh.indices}, nativeGrid(grid), bench.threads(), nullptr);
+        state.SetIterationTime(ms * 1e-3);
+        wallMs += ms;
+    }
+    addCounters(state, bench, one, loaded, grid, wallMs, 0);
+    state.counters.erase("bytesPerVoxel");  // not known
+    state.SetLabel(peer.rule);
+}
+
+benchmark::internal::Benchmark* add(const std::string& name, std::function<void(benchmark::State&)> run) {
+    return benchmark::RegisterBenchmark(name.c_str(), [run = std::move(run)](benchmark::State& state) {
         try {
             run(state);
         } catch (const std::exception& error) {
@@ -261,7 +286,7 @@ std::vector<std::string> optionChoices(const Method& method, std::uint32_t resol
     return choices;
 }
 
-void addAll(Bench& bench, const std::vector<Input>& meshes) {
+void addAll(Bench& bench, const std::vector<Input>& meshes, bool withPeers) {
     for (const Input& input : meshes) {
         for (const std::uint32_t resolution : kResolutions) {
             if (input.scaling && resolution != kSweepResolution) continue;
@@ -289,6 +314,17 @@ void addAll(Bench& bench, const std::vector<Input>& meshes) {
                 });
                 add(one.name, [&bench, one, line = line](benchmark::State& state) { benchNative(state, bench, one, line); });
             }
+            for (const peers::Peer& peer : peers::installed(kFamily == Family::solidVoxels)) {
+                if (!withPeers || resolution > peer.finest) continue;
+                const Case one{group + peer.name, group, input, resolution};
+                bench.judgeLater(group, one.name, [peer](Bench& b, const Bench::Loaded& loaded, const Grid& grid) {
+                    native::Bits bits;
+                    peer.run({coordinates(loaded.mesh), loaded.mesh.indices}, nativeGrid(grid), b.threads(), &bits);
+                    return hostBits(bits, grid);
+                });
+                // A call takes long enough for its time to be read once.
+                add(one.name, [&bench, one, peer](benchmark::State& state) { benchPeer(state, bench, one, peer); })->Iterations(1);
+            }
         }
     }
 }
@@ -300,7 +336,7 @@ int main(int argc, char** argv) {
     std::vector<std::string> words{argv[0], "--benchmark_repetitions=5", "--benchmark_enable_random_interleaving=true",
                                    "--benchmark_report_aggregates_only=true", "--benchmark_min_time=0.1"};
     words.insert(words.end(), argv + 1, argv + argc);
-    const bool timesOnly = std::erase(words, "--times_only") != 0;
+    const bool timesOnly = std::erase(words, "--times_only") != 0, withoutPeers = std::erase(words, "--no_peers") != 0;
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     int count = static_cast<int>(arguments.size());
@@ -309,7 +345,7 @@ int main(int argc, char** argv) {
     try {
         Bench bench(timesOnly);
         const std::vector<Input> meshes = inputs();
-        addAll(bench, meshes);
+        addAll(bench, meshes, !withoutPeers);
         addMachineContext(bench.deviceInfo());
         benchmark::AddCustomContext("copyGBs", std::to_string(bench.copyBandwidth * 1e-9));
         benchmark::RunSpecifiedBenchmarks();
