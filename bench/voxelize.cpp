@@ -185,6 +185,12 @@ void addCounters(benchmark::State& state, Bench& bench, const Case& one, const B
     state.counters["wallMs"] = wallMs / double(state.iterations());
 }
 
+/// Which cells a method means to mark; times are compared within a rule. Empty: an approximation.
+const char* ruleOf(const Voxelizer& method) {
+    const std::string_view called = name(method);
+    return kFamily == Family::solidVoxels ? "solid" : called == "conservative" || called == "thin" ? called.data() : "";
+}
+
 void benchMethod(benchmark::State& state, Bench& bench, const Case& one, const Voxelizer& method) {
     const Bench::Loaded& loaded = bench.mesh(one.input);
     const Grid grid = Grid::fit(loaded.mesh.bounds(), one.resolution);
@@ -200,6 +206,7 @@ void benchMethod(benchmark::State& state, Bench& bench, const Case& one, const V
         wallMs += report.wallMs;
     }
     addCounters(state, bench, one, loaded, grid, wallMs, double(estimate(loaded.onDevice, grid, method) + loaded.onDevice.bytes()));
+    state.SetLabel(ruleOf(method));
 }
 
 using NativeLine = void (*)(std::span<const float>, std::span<const std::uint32_t>, const native::Grid&, unsigned, native::Bits&);

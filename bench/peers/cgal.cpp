@@ -1,13 +1,13 @@
-// CGAL has no voxelizer; it has a tree of boxes over triangles that says, exactly, whether a box meets one of them. Asked of cubes from the
-// whole grid down to its cells, on all threads, that makes a conservative voxelizer of a dozen lines. Cells are closed: those that a triangle
-// only touches from outside count as well. Time includes the tree's construction.
-#include <atomic>
-#include <vector>
-
+// CGAL has no voxelizer; it has a tree of boxes over triangles that says, exactly, whether a box meets one of them. Asked of
+// cubes from the whole grid down to its cells, on all threads, that makes a conservative voxelizer of a dozen lines. Cells are
+// closed: those that a triangle only touches from outside count as well. Time includes the tree's construction.
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
 #include <CGAL/AABB_triangle_primitive.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+
+#include <atomic>
+#include <vector>
 
 #include "peers.h"
 #include "timing.h"
@@ -29,7 +29,8 @@ void mark(const Tree& tree, std::uint32_t x, std::uint32_t y, std::uint32_t z, s
         return;
     }
     const std::uint32_t half = edge / 2;
-    for (std::uint32_t i = 0; i < 8; ++i) mark(tree, x + (i & 1u) * half, y + (i >> 1 & 1u) * half, z + (i >> 2) * half, half, bits);
+    for (std::uint32_t i = 0; i < 8; ++i)
+        mark(tree, x + (i & 1u) * half, y + (i >> 1 & 1u) * half, z + (i >> 2) * half, half, bits);
 }
 
 }  // namespace
@@ -57,7 +58,8 @@ double cgalTree(const Triangles& triangles, const native::Grid& grid, unsigned t
         std::atomic<std::uint32_t> next = 0;
         native::parallel(threads, [&](unsigned) {
             for (std::uint32_t b; (b = next.fetch_add(1)) < blocks[0] * blocks[1] * blocks[2];)
-                mark(tree, b % blocks[0] * kBlock, b / blocks[0] % blocks[1] * kBlock, b / blocks[0] / blocks[1] * kBlock, kBlock, cells);
+                mark(tree, b % blocks[0] * kBlock, b / blocks[0] % blocks[1] * kBlock, b / blocks[0] / blocks[1] * kBlock, kBlock,
+                     cells);
         });
     });
 }

@@ -1,11 +1,11 @@
-// OpenVDB, tools::meshToVolume: a distance field in a narrow band around the mesh. Index coordinates are those of cell centres, so index
-// (i, j, k) is cell (i, j, k) of the grid; bounds it does not take. Cells whose centre lies within half a cell's diagonal of the surface
-// stand for the surface: every touched cell is one of those.
-#include <cmath>
-
+// OpenVDB, tools::meshToVolume: a distance field in a narrow band around the mesh. Index coordinates are those of cell centres,
+// so index (i, j, k) is cell (i, j, k) of the grid; bounds it does not take. Cells whose centre lies within half a cell's
+// diagonal of the surface stand for the surface: every touched cell is one of those.
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
 #include <tbb/global_control.h>
+
+#include <cmath>
 
 #include "peers.h"
 #include "timing.h"

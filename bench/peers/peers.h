@@ -1,4 +1,5 @@
-// bench/peers/peers.h: voxelizers of packaged libraries, as many as are installed. One small file each: nothing else compiles their headers.
+// bench/peers/peers.h: voxelizers of packaged libraries, as many as are installed. One small file each: nothing else compiles
+// their headers.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -12,7 +13,8 @@ struct Triangles {
     std::span<const std::uint32_t> indices;
 };
 
-/// Milliseconds of the library's own work, from triangles as it takes them to voxels as it keeps them. `bits`, unless null, gets its cells.
+/// Milliseconds of the library's own work, from triangles as it takes them to voxels as it keeps them. `bits`, unless null, gets
+/// its cells.
 using Run = double (*)(const Triangles& triangles, const native::Grid& grid, unsigned threads, native::Bits* bits);
 
 struct Peer {

@@ -1,6 +1,6 @@
-// VTK. vtkVoxelModeller marks the samples whose closest point on a triangle lies in their cell, triangle by triangle; vtkPolyDataToImageStencil
-// fills closed surfaces, as runs along x through the samples. Both take bounds and spacing; samples are the cells' centres. Both are of one
-// thread.
+// VTK. vtkVoxelModeller marks the samples whose closest point on a triangle lies in their cell, triangle by triangle;
+// vtkPolyDataToImageStencil fills closed surfaces, as runs along x through the samples. Both take bounds and spacing; samples are
+// the cells' centres. Both are of one thread.
 #include <vtkCellArray.h>
 #include <vtkFloatArray.h>
 #include <vtkImageData.h>

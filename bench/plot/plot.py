@@ -4,7 +4,7 @@
     plot.py out/bench/voxelize.json -o out/bench/voxelize.svg [--mesh bun_zipper,horse] [--error missing]
 
 One panel a mesh; across, the error; up, the kernel time; both logarithmic, zero error in a strip of its own at the left edge. One colour a
-method, a line along the resolution, at which markers grow; a sweep of an option is dashed. Native lines are points. At each resolution the
+method, a line along the resolution, at which markers grow; a sweep of an option is dashed. Native lines and packaged peers are points. At each resolution the
 Pareto front, the methods that no other beats in both, is a solid dark line.
 """
 
@@ -25,7 +25,7 @@ except ImportError as error:
 
 # Okabe & Ito 2008: told apart by colour-blind readers too.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
-NATIVE_COLOURS = ("#333333", "#777777")
+NATIVE_STYLES = (("#333333", "x"), ("#777777", "+"), ("#333333", "1"), ("#777777", "2"), ("#333333", "3"), ("#777777", "4"))  # and of peers
 MARKERS = ("o", "s", "D", "^", "v", "P")
 ERROR_TEXT = {
     "missing": "missing voxels, share of all touched cells",
@@ -146,8 +146,9 @@ def main():
     methods = list(dict.fromkeys(p.method for p in sorted(points, key=lambda p: p.native)))
     styles, ours, natives = {}, 0, 0
     for method in methods:
-        if method.startswith("native_"):
-            styles[method] = {"colour": NATIVE_COLOURS[natives % 2], "marker": ("x", "+")[natives % 2], "method": method}
+        if method.startswith(("native_", "peer_")):
+            colour, marker = NATIVE_STYLES[natives % len(NATIVE_STYLES)]
+            styles[method] = {"colour": colour, "marker": marker, "method": method}
             natives += 1
         else:
             styles[method] = {"colour": COLOURS[ours % len(COLOURS)], "marker": MARKERS[ours % len(MARKERS)], "method": method}
@@ -177,15 +178,15 @@ def main():
         if index + columns >= len(meshes):
             axes.tick_params(labelbottom=True)
     glass = options.error in ("wrong", "wrongStable")
-    family = "Solid" if all(method.startswith("solid") for method in methods) else "Surface"
+    family = "Solid" if all(p.method.startswith("solid") for p in points if not p.native) else "Surface"
     text = ERROR_TEXT[options.error].replace("touched cells", "touched cells" if family == "Surface" else "cells inside")
     figure.supxlabel(f"\N{LEFTWARDS ARROW} better    {text}", x=inner / 2, fontsize=9.5)
     figure.supylabel("\N{LEFTWARDS ARROW} better    kernel time, ms", y=upper / 2, fontsize=9.5)
 
     entries = []
     for method, style in styles.items():
-        native = method.startswith("native_")
-        text = method.replace("native_", "native: ").replace("_", " ") if native else method
+        native = method.startswith(("native_", "peer_"))
+        text = method.replace("native_", "native: ").replace("peer_", "peer: ").replace("_", " ") if native else method
         entries.append(Line2D([], [], color=style["colour"], marker=style["marker"], linewidth=0 if native or not several else 1.3, label=text))
     entries.append(Line2D([], [], color="#222222", linewidth=1.0, label="Pareto front" + (",\none a resolution" if several else "")))
     for option in swept:

@@ -16,10 +16,15 @@ class Point:
     triangles: int = 0
     limit_ms: float = 0  # what must move at least, at the bandwidth of a copy; 0: not known
     occupied: int = 0
+    rule: str = ""  # which cells it means to mark: conservative, thin, distance, solid; empty: not known, or an approximation
 
     @property
     def native(self):
-        return self.method.startswith("native_")
+        return self.method.startswith("native_") or self.peer
+
+    @property
+    def peer(self):
+        return self.method.startswith("peer_")
 
 
 ERRORS = ("missing", "extra", "missingThin", "leaks", "watertight", "wrong", "wrongStable")
@@ -48,6 +53,7 @@ def _from_benchmark(document):
                 triangles=int(one.get("triangles", 0)),
                 limit_ms=one.get("limitMs", 0),
                 occupied=int(one.get("occupied", 0)),
+                rule=one.get("label", ""),
             )
         )
     machine = {key: document["context"][key] for key in ("device", "compiler", "version", "commit", "date") if key in document["context"]}

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""bench/plot/summary.py: how a method stands to the native lines: ratios of medians of one run, and their geometric mean; how all stand to
-the memory limit; and how their time grows.
+"""bench/plot/summary.py: how a method stands to the native lines: ratios of medians of one run, and their geometric mean; to packaged peers;
+how all stand to the memory limit; and how their time grows.
 
     summary.py out/bench/voxelize.json [--method conservative]
 
-A ratio above 1 means that the method is that much slower than the line, below 1 faster.
+A ratio above 1 means that the method is that much slower than the line, below 1 faster. Peers that follow another rule have no ratio.
 """
 
 import argparse
@@ -42,6 +42,31 @@ def print_limits(points, grids, methods):
               ("mesh", "resolution", "limit ms", *methods), rows)
 
 
+def print_peers(points, grids, ours):
+    peers = {p.method: p.rule for p in points if p.peer}
+    by_key = {(p.mesh, p.resolution, p.method): p for p in points if not p.option}
+    rows, slower = [], {}
+    for mesh, resolution in grids:
+        mine = by_key.get((mesh, resolution, ours))
+        cells = [by_key.get((mesh, resolution, peer)) for peer in peers]
+        if mine is None or not any(cells):
+            continue
+        row = [mesh, str(resolution), f"{mine.kernel_ms:.3g}"]
+        for p in cells:
+            row.append("-" if p is None else f"{p.kernel_ms:.3g}" + (f" ({p.kernel_ms / mine.kernel_ms:.3g})" if p.rule == mine.rule else ""))
+            if p is not None and "missing" in p.errors:
+                row[-1] += f" -{100 * p.errors['missing']:.2g} +{100 * p.errors['extra']:.2g}"
+            if p is not None:
+                slower.setdefault(p.method, []).append(p.kernel_ms / mine.wall_ms)
+        rows.append(row)
+    if not rows:
+        return
+    table(f"packaged peers, ms of a call; in brackets over the kernel time of {ours}, where the rule is the same; cells missing and extra, %",
+          ("mesh", "resolution", f"{ours} ms", *(f"{peer} ({rule})" for peer, rule in peers.items())), rows)
+    for peer, ratios in slower.items():
+        print(f"{ours}, wall, is done before {peer} on {sum(r > 1 for r in ratios)} of {len(ratios)} grids")
+
+
 def print_growth(points, methods):
     rows = []
     for method in methods:
@@ -66,11 +91,12 @@ def print_growth(points, methods):
 
 
 def main():
-    parser = argparse.ArgumentParser(description="ratios of a method to the native lines, and their geometric mean")
-    parser.add_argument("files", nargs="+", help="JSON of bench_voxelize")
-    parser.add_argument("--method", default="conservative", help="by default conservative")
+    parser = argparse.ArgumentParser(description="ratios of a method to the native lines and to packaged peers")
+    parser.add_argument("files", nargs="+", help="JSON of bench_voxelize or bench_solid")
+    parser.add_argument("--method", help="by default conservative, of solids solid")
     options = parser.parse_args()
     points, machine = records.read(options.files)
+    options.method = options.method or ("conservative" if any(p.method == "conservative" for p in points) else "solid")
     by_key = {(p.mesh, p.resolution, p.method): p for p in points if not p.option}
     grids = list(dict.fromkeys((p.mesh, p.resolution) for p in points))
 
@@ -87,22 +113,14 @@ def main():
         ratios["wall"].append(ours.wall_ms / runs.kernel_ms)
         rows.append((mesh, str(resolution), str(ours.triangles), f"{ours.kernel_ms:.3g}", f"{ours.wall_ms:.3g}", f"{axis.kernel_ms:.3g}",
                      f"{runs.kernel_ms:.3g}", f"{ratios['axis'][-1]:.2f}", f"{ratios['runs'][-1]:.2f}", f"{ratios['wall'][-1]:.2f}"))
-    if not rows:
-        raise SystemExit(f"no grid has {options.method} and both native lines")
-    rows.append(("geometric mean", "", "", "", "", "", "",
-                 *(f"{math.exp(sum(map(math.log, r)) / len(r)):.2f}" for r in ratios.values())))
-    widths = [max(len(row[i]) for row in [head, *rows]) for i in range(len(head))]
-
-    def line(row):
-        return "  ".join(cell.ljust(width) if i == 0 else cell.rjust(width) for i, (cell, width) in enumerate(zip(row, widths)))
-
-    print(f"{options.method} vs the native lines, medians of one run; {records.machine_text(machine)}")
-    print(line(head))
-    print("-" * len(line(head)))
-    for row in rows[:-1]:
-        print(line(row))
-    print("-" * len(line(head)))
-    print(line(rows[-1]))
+    if not any(p.method == options.method for p in points):
+        raise SystemExit(f"no measurement of {options.method}")
+    print(f"{options.method}, medians of one run; {records.machine_text(machine)}")
+    if rows:
+        rows.append(("geometric mean", "", "", "", "", "", "",
+                     *(f"{math.exp(sum(map(math.log, r)) / len(r)):.2f}" for r in ratios.values())))
+        table("the native lines", head, rows)
+    print_peers(points, grids, options.method)
     methods = list(dict.fromkeys(p.method for p in points))
     print_limits(points, grids, methods)
     print_growth(points, methods)
