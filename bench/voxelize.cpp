@@ -278,18 +278,22 @@ benchmark::internal::Benchmark* add(const std::string& name, std::function<void(
 }
 
 /// The method's defaults and, where options are swept, each option at powers of two of its default (of an eighth of its range where that
-/// is 0).
+/// is 0), or a switch turned.
 std::vector<std::string> optionChoices(const Method& method, std::uint32_t resolution, bool scaling) {
     std::vector<std::string> choices{""};
     if (resolution != kSweepResolution || scaling) return choices;
-    for (const MethodOption& option : method.options)
-        for (const double factor : {0.5, 2.0, 4.0})
-            if (const double value = factor * (option.byDefault != 0 ? option.byDefault : option.most / 8);
-                !option.name.empty() && value >= option.least && value <= option.most) {
+    for (const MethodOption& option : method.options) {
+        if (option.name.empty()) continue;
+        const double base = option.byDefault != 0 ? option.byDefault : option.most / 8;
+        const std::vector<double> values =
+            option.unit == "0 or 1" ? std::vector{1 - option.byDefault} : std::vector{0.5 * base, 2 * base, 4 * base};
+        for (const double value : values)
+            if (value >= option.least && value <= option.most) {
                 char text[64];
                 std::snprintf(text, sizeof text, "%s=%g", std::string(option.name).c_str(), value);
                 choices.emplace_back(text);
             }
+    }
     return choices;
 }
 

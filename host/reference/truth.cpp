@@ -23,6 +23,7 @@
 #include <atomic>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <mutex>
 #include <numbers>
 #include <numeric>
@@ -302,6 +303,18 @@ Truth thin(const MeshView& mesh, const Grid& grid) {
 //   z = z_0 + (V * (z_1 - z_0) + W * (z_2 - z_0)) / ((U + V) + W)
 //   if not z >= lowest then z = lowest;  if z > highest then z = highest     (of z_0, z_1, z_2; the first catches 0 / 0)
 //   z < 0 or z > size.z: nothing;  z == size.z: slice size.z - 1;  else slice floor(z).
+// With span, the slice coordinates of the triangle's plane over the square of the column:
+//   box, orthographic   u = p_1 - p_0, v = p_2 - p_0;  area = u.x * v.y - v.x * u.y
+//                       h = (|(u.z * v.y - v.z * u.y) / area| + |(u.x * v.z - v.x * u.z) / area|) * 0.5;  low = z - h, high = z + h
+//   perspective         n = u x v of (x, y, w), d = |(n.x * x_0 + n.y * y_0) + n.z * w_0|
+//                       at = |(n.x * cx + n.y * cy) + n.z|,  spread = |n.x| * (tanX / size.x) + |n.y| * (tanY / size.y)
+//                       low = ((d / (at + spread) - near) / (far - near)) * size.z, high with at - spread, or the triangle's highest where
+//                       that is not above 0;  then not above z, not below z
+//   and if not low >= lowest then low = lowest;  if not high <= highest then high = highest.   Without span low = high = z.
+//   Cut to [0, size.z], z too (none left: nothing), it marks slice(low) to the greater of slice(z) and ceil(high) - 1, slice() as above.
+// With a range [n, f] of the column: least, most, middle = low / size.z, high / size.z, z / size.z rounded to float, cut to [n, f] (none left:
+//   nothing); then low, high and z are ((that - n) / (f - n)) * size.z, or 0 where f = n. depthRange: n the least of all `least`, f the
+//   greatest of all `most`.
 // A triangle edge-on to the line meets it only where rounding says so, by less than the rounding of its corners; it must then
 // count, or the surface that it belongs to would be met an odd number of times.
 // A column with all r > 0 or all r <= 0, or a row with all q > 0 or all q <= 0, meets nothing, whatever is rounded; and where all
@@ -362,11 +375,44 @@ namespace {
 /// +1 where edge a to b crosses upward in y beyond the column, -1 downward.
 int senseOf(double ra, double qa, double rb, double qb) { return crosses(ra, qa, rb, qb) ? (qa <= 0 ? 1 : -1) : 0; }
 
-/// Calls hit(column, row, slice coordinate, triangle, sense) for every crossing of the line of a column, of triangles that are not all
-/// outside the slices or, with everyDepth, of all; by many threads at a time. Sense: +1 for a triangle whose corners are seen
-/// counterclockwise with x to the right and y up, else -1.
+/// Slice coordinates of the footprint of a fragment at (cx, cy) of depth z.
+std::array<double, 2> footprint(const std::array<Sample, 3>& p, const vitrail_GridDesc& g, double cx, double cy, double z, double lowest,
+                                double highest) {
+    const double ux = p[1].x - p[0].x, uy = p[1].y - p[0].y, vx = p[2].x - p[0].x, vy = p[2].y - p[0].y;
+    double low, high;
+    if (g.kind != VITRAIL_GRID_PERSPECTIVE) {
+        const double uz = p[1].z - p[0].z, vz = p[2].z - p[0].z, area = ux * vy - vx * uy;
+        const double reach = (std::abs((uz * vy - vz * uy) / area) + std::abs((ux * vz - vx * uz) / area)) * 0.5;
+        low = z - reach;
+        high = z + reach;
+    } else {
+        const double uw = p[1].w - p[0].w, vw = p[2].w - p[0].w;
+        const double nx = uy * vw - uw * vy, ny = uw * vx - ux * vw, nz = ux * vy - uy * vx;
+        const double d = std::abs((nx * p[0].x + ny * p[0].y) + nz * p[0].w), at = std::abs((nx * cx + ny * cy) + nz);
+        const double spread = std::abs(nx) * (double(g.extent.x) / g.size.x) + std::abs(ny) * (double(g.extent.y) / g.size.y);
+        const double nearDepth = g.extent.z, depth = double(g.extent.w) - nearDepth;
+        low = ((d / (at + spread) - nearDepth) / depth) * double(g.size.z);
+        high = at > spread ? ((d / (at - spread) - nearDepth) / depth) * double(g.size.z) : highest;
+        if (!(low <= z)) low = z;
+        if (!(high >= z)) high = z;
+    }
+    if (!(low >= lowest)) low = lowest;
+    if (!(high <= highest)) high = highest;
+    return {low, high};
+}
+
+/// Where a triangle meets the line of a column, and how far its footprint goes: slice coordinates.
+struct Fragment {
+    std::uint32_t x, y;
+    double low, middle, high;
+    std::size_t triangle;
+    int sense;  // +1 for a triangle whose corners are seen counterclockwise with x to the right and y up, else -1
+};
+
+/// Calls hit(fragment) for every crossing of the line of a column, of triangles that are not all outside the slices or, with everyDepth, of
+/// all; by many threads at a time.
 template <class Hit>
-void scanColumns(const MeshView& mesh, const Grid& grid, bool everyDepth, const Hit& hit) {
+void scanColumns(const MeshView& mesh, const Grid& grid, bool everyDepth, bool span, const Hit& hit) {
     const vitrail_GridDesc& g = grid.desc();
     const bool perspective = g.kind == VITRAIL_GRID_PERSPECTIVE;
     const double depth = g.size.z;
@@ -393,33 +439,71 @@ void scanColumns(const MeshView& mesh, const Grid& grid, bool everyDepth, const 
                     double z = v[0].z + (V * (v[1].z - v[0].z) + W * (v[2].z - v[0].z)) / ((U + V) + W);
                     if (!(z >= lowest)) z = lowest;
                     if (z > highest) z = highest;
+                    const auto [low, high] = span ? footprint(v, g, cx, cy, z, lowest, highest) : std::array<double, 2>{z, z};
                     const int sense = senseOf(r[0], q[0], r[1], q[1]) + senseOf(r[1], q[1], r[2], q[2]) + senseOf(r[2], q[2], r[0], q[0]);
-                    hit(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), z, t, sense);
+                    hit({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), low, z, high, t, sense});
                 }
             }
         }
     });
 }
 
+/// The same for those that reach into the grid, cut to its slices.
+template <class Hit>
+void scanFragments(const MeshView& mesh, const Grid& grid, bool span, const Hit& hit) {
+    const double depth = grid.size().z;
+    scanColumns(mesh, grid, false, span, [&](const Fragment& one) {
+        if (one.high < 0 || one.low > depth) return;
+        const double low = std::max(one.low, 0.0), high = std::min(one.high, depth);
+        hit({one.x, one.y, low, std::min(std::max(one.middle, low), high), high, one.triangle, one.sense});
+    });
+}
+
 }  // namespace
 
-VoxelBits sampled(const MeshView& mesh, const Grid& grid) {
+VoxelBits sampled(const MeshView& mesh, const Grid& grid, bool span, const Ranges* ranges) {
     VoxelBits bits(grid);
     const double depth = grid.size().z;
-    scanColumns(mesh, grid, false, [&](std::uint32_t i, std::uint32_t j, double z, std::size_t, int) {
-        if (z < 0 || z > depth) return;
-        mark(bits, i, j, static_cast<std::uint32_t>(z == depth ? depth - 1 : std::floor(z)));
+    const auto slice = [&](double z) { return static_cast<std::int64_t>(z == depth ? depth - 1 : std::floor(z)); };
+    scanFragments(mesh, grid, span, [&](Fragment one) {
+        if (ranges != nullptr) {
+            const std::size_t column = std::size_t(one.y) * grid.size().x + one.x;
+            const float n = ranges->nearest[column], f = ranges->farthest[column];
+            const auto least = static_cast<float>(one.low / depth), most = static_cast<float>(one.high / depth);
+            if (!(most >= n) || !(least <= f)) return;
+            const auto at = [&](float t) {
+                t = std::min(std::max(t, n), f);
+                return f > n ? ((double(t) - double(n)) / (double(f) - double(n))) * depth : 0.0;
+            };
+            one = {one.x, one.y, at(least), at(static_cast<float>(one.middle / depth)), at(most), one.triangle, one.sense};
+        }
+        const std::int64_t last = std::max(slice(one.middle), static_cast<std::int64_t>(std::ceil(one.high)) - 1);
+        for (std::int64_t k = slice(one.low); k <= last; ++k) mark(bits, one.x, one.y, static_cast<std::uint32_t>(k));
     });
     return bits;
+}
+
+Ranges depthRange(const MeshView& mesh, const Grid& grid, bool span) {
+    const std::size_t columns = std::size_t(grid.size().x) * grid.size().y;
+    Ranges ranges{std::vector<float>(columns, std::numeric_limits<float>::infinity()), std::vector<float>(columns, 0.0f)};
+    const double depth = grid.size().z;
+    std::mutex mutex;
+    scanFragments(mesh, grid, span, [&](const Fragment& one) {
+        const std::size_t column = std::size_t(one.y) * grid.size().x + one.x;
+        const std::lock_guard lock(mutex);
+        ranges.nearest[column] = std::min(ranges.nearest[column], static_cast<float>(one.low / depth));
+        ranges.farthest[column] = std::max(ranges.farthest[column], static_cast<float>(one.high / depth));
+    });
+    return ranges;
 }
 
 VoxelBits solid(const MeshView& mesh, const Grid& grid) {
     const Uint3 size = grid.size();
     std::vector<std::vector<double>> crossings(std::size_t(size.x) * size.y);
     std::mutex mutex;
-    scanColumns(mesh, grid, true, [&](std::uint32_t i, std::uint32_t j, double z, std::size_t, int) {
+    scanColumns(mesh, grid, true, false, [&](const Fragment& one) {
         const std::lock_guard lock(mutex);
-        crossings[std::size_t(j) * size.x + i].push_back(z);
+        crossings[std::size_t(one.y) * size.x + one.x].push_back(one.middle);
     });
     VoxelBits bits(grid);
     for (std::uint32_t j = 0; j < size.y; ++j)
@@ -471,9 +555,10 @@ VoxelBits solidSlicemap(const MeshView& mesh, const Grid& grid) {
     const int hand = handOf(grid);
     VoxelBits front(grid), back(grid), bits(grid);
     const double depth = size.z;
-    scanColumns(mesh, grid, false, [&](std::uint32_t i, std::uint32_t j, double z, std::size_t, int sense) {
+    scanColumns(mesh, grid, false, false, [&](const Fragment& one) {
+        const double z = one.middle;
         if (z < 0 || z > depth) return;
-        mark(hand * sense < 0 ? front : back, i, j, static_cast<std::uint32_t>(z == depth ? depth - 1 : std::floor(z)));
+        mark(hand * one.sense < 0 ? front : back, one.x, one.y, static_cast<std::uint32_t>(z == depth ? depth - 1 : std::floor(z)));
     });
     std::vector<bool> f(size.z), b(size.z);
     for (std::uint32_t j = 0; j < size.y; ++j)
@@ -578,9 +663,9 @@ Winding winding(const MeshView& mesh, const Grid& grid, unsigned every) {
     };
     std::vector<std::vector<Crossing>> crossings(std::size_t(size.x) * size.y);
     std::mutex mutex;
-    scanColumns(mesh, grid, true, [&](std::uint32_t i, std::uint32_t j, double at, std::size_t t, int sense) {
+    scanColumns(mesh, grid, true, false, [&](const Fragment& one) {
         const std::lock_guard lock(mutex);
-        crossings[std::size_t(j) * size.x + i].push_back({at, -hand * sense, parts.open[t]});
+        crossings[std::size_t(one.y) * size.x + one.x].push_back({one.middle, -hand * one.sense, parts.open[one.triangle]});
     });
     Winding result{{VoxelBits(grid), VoxelBits(grid)}, VoxelBits(grid)};
     inParallel(crossings.size(), 8, [&](std::size_t begin, std::size_t end) {

@@ -89,6 +89,7 @@ Voxels::~Voxels() = default;
 
 const Grid& Voxels::grid() const { return state_->grid; }
 Channel Voxels::channels() const { return state_->channels; }
+const DepthRange* Voxels::range() const { return state_->range ? &*state_->range : nullptr; }
 const Buffer<std::uint32_t>& Voxels::bits() const { return state_->bits; }
 const Buffer<std::uint32_t>& Voxels::bricks() const { return state_->bricks; }
 const Buffer<std::uint32_t>& Voxels::brickTiles() const { return state_->brickTiles; }
@@ -184,6 +185,7 @@ const VoxelReport& Voxels::report() const {
             report.outsideTriangles = status[detail::kStatusOutside];
             report.openColumns = status[detail::kStatusOpen];
             report.guessedCells = status[detail::kStatusGuessed];
+            report.clippedFragments = status[detail::kStatusClipped];
         }
         state_->report = report;
     }

@@ -14,7 +14,7 @@ inline namespace v0 {
 namespace detail {
 
 /// Counts that a voxelizer's kernels keep, in this order, in a buffer of kStatusWords u32 (kernels/lib/triangle.cl).
-enum Status : std::uint32_t { kStatusTasks, kStatusDegenerate, kStatusSkipped, kStatusOutside, kStatusOpen, kStatusGuessed, kStatusWords };
+enum Status : std::uint32_t { kStatusTasks, kStatusDegenerate, kStatusSkipped, kStatusOutside, kStatusOpen, kStatusGuessed, kStatusClipped, kStatusWords };
 
 struct VoxelsState {
     Queue queue;
@@ -23,6 +23,7 @@ struct VoxelsState {
     Buffer<std::uint32_t> bits;
     Buffer<std::uint32_t> bricks, brickTiles;          // empty: dense
     Buffer<std::uint32_t> counts, normals, materials;  // one entry an occupied voxel; empty unless asked for
+    std::optional<DepthRange> range;                   // empty: slices are uniform
     Buffer<std::uint32_t> status;                      // kStatusWords; empty: nothing was counted
     std::shared_ptr<Record> record;
     std::string method, options;

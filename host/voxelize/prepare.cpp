@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <optional>
 
 namespace vitrail {
 inline namespace v0 {
@@ -52,6 +51,10 @@ double optionValue(const Method& row, const std::string& text) {
     if (error != std::errc() || end != last || first == last)
         throw Error(ErrorCode::badOption, {std::string(row.name) + ": \"" + text + "\" gives no number", "", "", optionsOf(row)});
     return value;
+}
+
+void failSwitch(const Method& row, const std::string& text) {
+    throw Error(ErrorCode::badOption, {std::string(row.name) + ": \"" + text + "\" is neither 0 (off) nor 1 (on)", "", "", optionsOf(row)});
 }
 
 void failUnknownOption(const Method& row, const std::string& text) {
@@ -149,6 +152,15 @@ std::uint64_t estimateVoxelizer(const MeshInput& mesh, const Grid& grid, Channel
     return bytesOf(mesh, grid, channels, grid.wordCount() * 4 > kDenseMost);
 }
 
+const DeviceMesh& onDevice(Queue& queue, const MeshInput& input, bool materials, std::optional<DeviceMesh>& uploaded) {
+    if (input.device() != nullptr) return *input.device();
+    MeshView view = input.view();
+    view.normals = {};
+    view.texcoords = {};
+    if (!materials) view.materials = {};
+    return uploaded.emplace(queue, view);
+}
+
 Voxels runVoxelizer(Queue& queue, const MeshInput& input, const Grid& grid, Channel channels, const char* name,
                     const std::string& options, const std::function<void(Pass&, const MarkChannels*)>& mark, const Scratch& scratch) {
     if (input.triangleCount() == 0) throw Error(ErrorCode::badInput, {std::string(name) + ": the mesh has no triangles", "", "", "a mesh with faces"});
@@ -162,14 +174,7 @@ Voxels runVoxelizer(Queue& queue, const MeshInput& input, const Grid& grid, Chan
     Call call(queue, std::string("voxelizing ") + std::to_string(input.triangleCount()) + " triangles");
     call.step(name, 0.0);
     std::optional<DeviceMesh> uploaded;
-    if (input.device() == nullptr) {
-        MeshView view = input.view();
-        view.normals = {};
-        view.texcoords = {};
-        if (!has(channels, Channel::material)) view.materials = {};
-        uploaded.emplace(queue, view);
-    }
-    const DeviceMesh& mesh = uploaded ? *uploaded : *input.device();
+    const DeviceMesh& mesh = onDevice(queue, input, has(channels, Channel::material), uploaded);
 
     Workspace& workspace = queue.workspace();
     auto out = std::make_unique<VoxelsState>(queue.state(), grid);

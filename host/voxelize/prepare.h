@@ -1,6 +1,7 @@
 // voxelize/prepare.h: what every voxelizer does alike: check, upload, take memory, run its bits, then its channels.
 #pragma once
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -38,6 +39,7 @@ std::string checkOptions(const M& method) {
 
 /// The number in "name=value", which is an option of `row`. Throws Error (badOption).
 double optionValue(const Method& row, const std::string& text);
+[[noreturn]] void failSwitch(const Method& row, const std::string& text);
 [[noreturn]] void failUnknownOption(const Method& row, const std::string& text);
 
 /// Sets the members that "name=value" speak of. Throws Error (badOption).
@@ -48,7 +50,10 @@ void setOptions(M& method, std::span<const std::string> options) {
         M::visitOptions(method, [&](std::string_view name, auto& member) {
             if (name != std::string_view(text).substr(0, text.find('='))) return;
             known = true;
-            member = static_cast<std::remove_reference_t<decltype(member)>>(optionValue(*findMethod(M::name), text));
+            const double value = optionValue(*findMethod(M::name), text);
+            // Before a switch makes a 1 of everything else.
+            if (std::is_same_v<std::remove_reference_t<decltype(member)>, bool> && value != 0 && value != 1) failSwitch(*findMethod(M::name), text);
+            member = static_cast<std::remove_reference_t<decltype(member)>>(value);
         });
         if (!known) failUnknownOption(*findMethod(M::name), text);
     }
@@ -85,6 +90,9 @@ struct Scratch {
     std::uint64_t bytes = 0;  ///< a call that would pass the memory limit with them is refused
     bool bricks = true;       ///< whether it can work on bricks
 };
+
+/// The mesh on the device, where it is already or as `uploaded` for the call.
+const DeviceMesh& onDevice(Queue& queue, const MeshInput& mesh, bool materials, std::optional<DeviceMesh>& uploaded);
 
 /// Checks, uploads, takes memory, and calls `mark(pass, null)` for the bits and, with channels, `mark(pass, channels)`. Where bits lie in
 /// bricks it calls `mark(pass, null)` once before with no pass.out.bits, to find the tiles that need one.

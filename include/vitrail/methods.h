@@ -43,9 +43,9 @@ inline constexpr Method kMethods[] = {
      {kNoOption, kNoOption, kNoOption}},
     {"sampled", Family::surfaceVoxels, "Eisemann & Decoret 2006, section 2", Guarantee::exact,
      "One voxel for each column centre that a triangle covers (top-left rule): equal to a scan of column centres bit for bit; "
-     "steep and sub-cell triangles leave holes.",
+     "steep and sub-cell triangles leave holes, of which span closes those along z.",
      true, true, Role::product,
-     {kNoOption, kNoOption, kNoOption}},
+     {MethodOption{"span", 0, 0, 1, "0 or 1", "1: every slice that a fragment's column footprint covers"}, kNoOption, kNoOption}},
     {"sliced", Family::surfaceVoxels, "Chang et al. 2013, section 3, heuristic 2", Guarantee::exact,
      "Each triangle in every slice that it meets: the voxels of sampled bit for bit, with extension those of overlapping slices too, "
      "which closes holes along z.",

@@ -12,6 +12,7 @@
 #define STATUS_OUTSIDE 3
 #define STATUS_OPEN 4
 #define STATUS_GUESSED 5
+#define STATUS_CLIPPED 6
 
 typedef struct {
     Point a, b, c;

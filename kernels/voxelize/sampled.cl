@@ -1,12 +1,18 @@
-// voxelize/sampled.cl: the columns whose centre a triangle covers, and the slice of each (vitrail/voxelize/sampled.h).
+// voxelize/sampled.cl: the columns whose centre a triangle covers, and the slices of each (vitrail/voxelize/sampled.h, depth_range.h).
 #include "lib/mark.cl"
-#include "lib/samples.cl"
+#include "lib/runs.cl"
 #pragma OPENCL FP_CONTRACT OFF
 
+#define SAMPLED_RUNS(constant)                                                                                                            \
+    case constant:                                                                                                                        \
+        clipped = runs_rows(constant, grid, &s, xLeast, xMost, yLeast, yMost, &footprint, nearest, farthest, bits, &share);              \
+        break
+
 // One triangle, or one block of a big one (block >= 0). Returns without marking when it is not usable.
-static inline void sampled_triangle(const vitrail_GridDesc* grid, global const float* positions, global const uint* indices,
-                                    uint vertexCount, uint triangle, int block, const Bits* bits, const Channels* channels,
-                                    global const uint* materials, global uint2* tasks, uint taskCapacity, global uint* status) {
+static inline void sampled_triangle(const vitrail_GridDesc* grid, uint flags, global uint* nearest, global uint* farthest,
+                                    global const float* positions, global const uint* indices, uint vertexCount, uint triangle, int block,
+                                    const Bits* bits, const Channels* channels, global const uint* materials, global uint2* tasks,
+                                    uint taskCapacity, global uint* status) {
     uint corner[3];
     Samples s;
     const int state = samples_load(grid, positions, indices, vertexCount, triangle, false, corner, &s);
@@ -16,17 +22,31 @@ static inline void sampled_triangle(const vitrail_GridDesc* grid, global const f
     if (tasks_columns(&xLeast, &xMost, &yLeast, &yMost, block, tasks, taskCapacity, status, triangle)) return;
     Share share;
     samples_share(channels, positions, corner, materials, triangle, &share);
-    samples_rows(grid, &s, xLeast, xMost, yLeast, yMost, 0, bits, &share);
+    if (flags == 0u) {
+        samples_rows(grid, &s, xLeast, xMost, yLeast, yMost, 0, bits, &share);
+        return;
+    }
+    Footprint footprint;
+    footprint_begin(grid, &s, (flags & RUNS_SPAN) != 0u, &footprint);
+    uint clipped = 0u;
+    switch (flags) {  // constants in loops of their own: half the time of a loop that asks
+        SAMPLED_RUNS(RUNS_SPAN);
+        SAMPLED_RUNS(RUNS_LOCAL);
+        SAMPLED_RUNS(RUNS_RANGES);
+        SAMPLED_RUNS(RUNS_SPAN | RUNS_LOCAL);
+        SAMPLED_RUNS(RUNS_SPAN | RUNS_RANGES);
+    }
+    if (clipped != 0u) atomic_add(status + STATUS_CLIPPED, clipped);
 }
 
-kernel void sampled_mark(const vitrail_GridDesc grid, MARK_PARAMETERS) {
+kernel void sampled_mark(const vitrail_GridDesc grid, uint flags, global uint* nearest, global uint* farthest, MARK_PARAMETERS) {
     const Channels channels = MARK_CHANNELS;
     const Bits bits = MARK_BITS;
     MARK_EIGHTS(triangles, blocks, live, {
         live &= samples_eight(&grid, positions, indices, vertexCount, triangles, false);
         for (int lane = 0; lane < LANES; ++lane)
             if (lanes_int_at(&live, lane))
-                sampled_triangle(&grid, positions, indices, vertexCount, triangles[lane], blocks[lane], &bits, rank ? &channels : 0, materials,
-                                 tasks, taskCapacity, status);
+                sampled_triangle(&grid, flags, nearest, farthest, positions, indices, vertexCount, triangles[lane], blocks[lane], &bits,
+                                 rank ? &channels : 0, materials, tasks, taskCapacity, status);
     })
 }

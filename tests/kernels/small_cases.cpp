@@ -27,6 +27,11 @@ int main() {
                    longer = test::triangles({{-60, 20, 1}, {8, 22, 4}, {8, 22.5f, 4}});
         for (const Precision precision : {Precision::best, Precision::single}) {
             const test::WithPrecision set(queue, precision);
+            for (const Grid& grid : {Grid::box(Float3(0), 1.0f, size), test::cameraGrids({Float3(0), Float3(size)}, Uint3(7, 6, 5))[2]}) {
+                const DepthRange range = depthRange(queue, mesh, grid, true);
+                std::printf("local slices: %llu voxels\n",
+                            static_cast<unsigned long long>(voxelize(queue, mesh, grid, Sampled{.span = true, .range = &range}).occupied()));
+            }
             for (const Method& row : methods()) {
                 if (!isVoxelizer(row)) continue;
                 const Voxelizer method = voxelizerByName(

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/support/cases.h"
 #include "tests/support/closed.h"
 
 namespace vitrail {
@@ -308,6 +309,50 @@ TEST(SampledTruth, EveryKindOfGridAgreesWithItsMapping) {
         }
         EXPECT_EQ(met, 400u);
     }
+}
+
+// Depths of a plane over the square of a column, by rays through its four corners and through its centre.
+TEST(SampledTruth, ASpanIsWhatThePlaneDoesOverTheSquare) {
+    test::Random random(17);
+    const Bounds room{Float3(-3), Float3(3)};
+    std::uint64_t runs = 0, longer = 0;
+    for (const Grid& grid : test::cameraGrids(room, {9, 8, 300})) {
+        const Uint3 size = grid.size();
+        for (int i = 0; i < 20; ++i) {
+            // Large enough to cover every column, so that nothing is cut to its depths.
+            const Double3 middle = grid.toWorld({4.5, 4, 150}), normal = glm::normalize(Double3(random.point(Float3(-1), Float3(1))));
+            const Double3 u = glm::normalize(glm::cross(normal, Double3(0.3, 0.5, 0.8))), v = glm::cross(normal, u);
+            const Float3 a(middle + u * 900.0), b(middle - u * 450.0 + v * 900.0), c(middle - u * 450.0 - v * 900.0);
+            const Double3 n = glm::cross(Double3(b) - Double3(a), Double3(c) - Double3(a));
+            const VoxelBits bits = sampled(triangles({a, b, c}), grid, true);
+            for (unsigned y = 0; y < size.y; ++y)
+                for (unsigned x = 0; x < size.x; ++x) {
+                    double low = 1e30, high = -1e30;
+                    bool before = true;  // the eye, and not at grazing angles
+                    for (const Double3& at : {Double3(x, y, 0), Double3(x + 1, y, 0), Double3(x, y + 1, 0), Double3(x + 1, y + 1, 0)}) {
+                        const Double3 from = grid.toWorld(at), along = grid.toWorld(at + Double3(0, 0, 1)) - from;
+                        const double z = glm::dot(n, Double3(a) - from) / glm::dot(n, along);
+                        before = before && z > -40 && z < 3e3;
+                        low = std::min(low, z);
+                        high = std::max(high, z);
+                    }
+                    if (!before || high < 0 || low > size.z) continue;
+                    ++runs;
+                    longer += high - low > 2;
+                    // Nothing of the run is decided by less than 1e-6 of a slice: coordinates of 1e3 cells in doubles, slopes to 1e4.
+                    for (unsigned z = 0; z < size.z; ++z) {
+                        if (z + 1 > low + 1e-6 && z < high - 1e-6) {
+                            EXPECT_TRUE(bits.at(x, y, z)) << x << " " << y << " " << z << " of " << low << " to " << high;
+                        }
+                        if (z + 1 < low - 1e-6 || z > high + 1e-6) {
+                            EXPECT_FALSE(bits.at(x, y, z)) << x << " " << y << " " << z << " of " << low << " to " << high;
+                        }
+                    }
+                }
+        }
+    }
+    EXPECT_GT(runs, 1000u);
+    EXPECT_GT(longer, 500u);
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <vitrail/scene/shapes.h>
 #include <vitrail/voxelize/voxelize.h>
 
+#include <bit>
+
 #include "tests/support/cases.h"
 #include "tests/support/device.h"
 
@@ -16,6 +18,12 @@ std::string hashOf(const std::vector<std::uint32_t>& values) {
     char text[24];
     std::snprintf(text, sizeof text, " %016llx", static_cast<unsigned long long>(hash));
     return text;
+}
+
+std::vector<std::uint32_t> bitsOf(const std::vector<float>& values) {
+    std::vector<std::uint32_t> bits;
+    for (const float v : values) bits.push_back(std::bit_cast<std::uint32_t>(v));
+    return bits;
 }
 
 }  // namespace
@@ -32,6 +40,11 @@ std::string fingerprint(Queue& queue, const Mesh& mesh) {
     std::string lines;
     for (const Precision precision : {Precision::best, Precision::single}) {
         const WithPrecision set(queue, precision);
+        for (const Grid& grid : cameraGrids(bounds, {70, 60, 50})) {
+            const DepthRange range = depthRange(queue, mesh, grid, true);
+            lines += "depth range:" + hashOf(bitsOf(range.nearest().read(queue))) + hashOf(bitsOf(range.farthest().read(queue))) +
+                     hashOf(voxelize(queue, mesh, grid, Sampled{.span = true, .range = &range}).host().words) + "\n";
+        }
         for (const Method& row : methods()) {
             if (!isVoxelizer(row)) continue;
             // Of a soup every triangle is a hole to solid_winding.

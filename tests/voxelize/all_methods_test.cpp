@@ -269,6 +269,13 @@ TEST(Methods, OptionsAreCheckedNeverClamped) {
         } catch (const Error& error) {
             EXPECT_EQ(error.code(), ErrorCode::badOption);
         }
+    for (const char* span : {"span=2", "span=0.5", "span=-1", "span=on"}) try {
+            (void)voxelizerByName("sampled", std::vector<std::string>{span});
+            ADD_FAILURE() << "no error for " << span;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::badOption);
+        }
+    EXPECT_TRUE(std::get<Sampled>(voxelizerByName("sampled", std::vector<std::string>{"span=1"})).span);
     const Voxels v = voxelize(queue(), mesh, Grid::fit(mesh.bounds(), 8), Points{.safetyFactor = 16});
     EXPECT_EQ(v.report().options, "safetyFactor=16");
 }

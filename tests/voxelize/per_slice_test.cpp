@@ -1,6 +1,5 @@
-// per_slice: equal to the plain scan of column centres, slice after slice.
+// per_slice: the fragments of sampled; its voxels in scan_test.cpp.
 #include <gtest/gtest.h>
-#include <vitrail/reference/truth.h>
 #include <vitrail/voxelize/per_slice.h>
 #include <vitrail/voxelize/sampled.h>
 
@@ -14,23 +13,6 @@ namespace {
 using test::queue;
 
 constexpr Channel kAll = Channel::count | Channel::normal | Channel::material;
-
-void expectScan(const Mesh& mesh, const Grid& grid, const std::string& name) {
-    const VoxelBits scan = reference::sampled(mesh, grid);
-    EXPECT_EQ(voxelize(queue(), mesh, grid, PerSlice{}).host().words, scan.words) << name << " on " << grid.text();
-}
-
-TEST(PerSlice, EqualsTheScanOnShapes) {
-    for (const test::Case& one : test::smallShapes()) {
-        for (const unsigned longest : {1u, 33u, 64u}) expectScan(one.mesh, Grid::fit(one.mesh.bounds(), longest), one.name);
-        for (const Grid& grid : test::cameraGrids(one.mesh.bounds(), {50, 37, 70})) expectScan(one.mesh, grid, one.name);
-    }
-}
-
-TEST(PerSlice, EqualsTheScanOnMeanMeshes) {
-    for (const Uint3 size : {Uint3(1), Uint3(31, 33, 32)})
-        for (const test::Case& one : test::meanMeshes(size)) expectScan(one.mesh, Grid::box(Float3(0), 1.0f, size), one.name);
-}
 
 TEST(PerSlice, HasTheFragmentsOfSampled) {
     const Uint3 size(40, 30, 50);

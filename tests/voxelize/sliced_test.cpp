@@ -1,4 +1,4 @@
-// sliced: without extension equal to the plain scan of column centres; with it, to a scan of the same columns cut into finer slices.
+// sliced: with extension equal to a scan of the same columns cut into finer slices.
 #include <gtest/gtest.h>
 #include <vitrail/reference/truth.h>
 #include <vitrail/voxelize/sampled.h>
@@ -6,12 +6,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "tests/support/bits.h"
 #include "tests/support/cases.h"
 #include "tests/support/closed.h"
 #include "tests/support/device.h"
+#include "tests/support/scan.h"
 
 namespace vitrail {
 namespace {
@@ -27,29 +27,6 @@ std::uint64_t beyond(const VoxelBits& a, const VoxelBits& b) {
     for (std::size_t w = 0; w < a.words.size(); ++w)
         bits += static_cast<std::uint64_t>(__builtin_popcount(a.words[w] & ~b.words[w]));
     return bits;
-}
-
-void expectScan(const Mesh& mesh, const Grid& grid, const std::string& name) {
-    const VoxelBits scan = reference::sampled(mesh, grid);
-    EXPECT_EQ(differing(voxelize(queue(), mesh, grid, Sliced{}).host(), scan), 0u)
-        << name << " on " << grid.text() << ", " << scan.occupied() << " in the scan";
-}
-
-TEST(Sliced, EqualsTheScanOnShapes) {
-    for (const test::Case& one : test::smallShapes()) {
-        for (const unsigned longest : {1u, 31u, 33u, 64u}) expectScan(one.mesh, Grid::fit(one.mesh.bounds(), longest), one.name);
-        for (const Grid& grid : test::cameraGrids(one.mesh.bounds(), {50, 37, 70})) expectScan(one.mesh, grid, one.name);
-    }
-}
-
-TEST(Sliced, EqualsTheScanOnMeanMeshes) {
-    for (const Uint3 size : {Uint3(1), Uint3(31, 33, 32), Uint3(9, 70, 100)}) {
-        const Grid grid = Grid::box(Float3(0), 1.0f, size);
-        for (const test::Case& one : test::meanMeshes(size)) {
-            expectScan(one.mesh, grid, one.name);
-            for (const Grid& camera : test::cameraGrids({Float3(0), Float3(size)}, size)) expectScan(one.mesh, camera, one.name);
-        }
-    }
 }
 
 // Triangles ever thinner along xy (by 4^-thinness), ever flatter along z about a face between slices: their depths are what rounding
@@ -160,28 +137,11 @@ TEST(Sliced, GrowsWithItsExtension) {
     }
 }
 
-// Every triangle alone, scanned on the host, against the counts of the device.
 TEST(Sliced, CountsTrianglesInOverlappingSlabs) {
-    const Uint3 size(20, 17, 40);
-    const Grid grid = Grid::box(Float3(0), 1.0f, size);
-    const Mesh mesh = test::soup(11, 200, size, 12);
-    std::vector<std::uint32_t> expected(grid.voxelCount(), 0);
-    const auto at = [&](Uint3 c) { return (std::size_t(c.z) * size.y + c.y) * size.x + c.x; };
-    for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
-        const Mesh alone = test::triangles({mesh.positions[3 * t], mesh.positions[3 * t + 1], mesh.positions[3 * t + 2]});
-        const VoxelBits one = extended(fineScan(alone, grid, 4), grid, 4, 1);
-        for (std::uint32_t z = 0; z < size.z; ++z)
-            for (std::uint32_t y = 0; y < size.y; ++y)
-                for (std::uint32_t x = 0; x < size.x; ++x) expected[at({x, y, z})] += one.at(x, y, z);
-    }
+    const Grid grid = Grid::box(Float3(0), 1.0f, {20, 17, 40});
+    const Mesh mesh = test::soup(11, 200, grid.size(), 12);
     const Voxels got = voxelize(queue(), mesh, grid, Sliced{.extension = 25, .channels = Channel::count});
-    std::uint64_t all = 0;
-    got.forEach([&](Uint3 cell, std::uint64_t index) {
-        EXPECT_EQ(got.counts()[index], expected[at(cell)]);
-        all += got.counts()[index];
-    });
-    EXPECT_EQ(all, std::accumulate(expected.begin(), expected.end(), std::uint64_t(0)));
-    EXPECT_GT(all, 1000u);
+    test::expectCounts(got, test::scannedCounts(mesh, grid, [](const Mesh& m, const Grid& g) { return extended(fineScan(m, g, 4), g, 4, 1); }), 1000);
     EXPECT_EQ(got.report().options, "extension=25");
 }
 

@@ -28,9 +28,16 @@ Truth conservative(const MeshView& mesh, const Grid& grid);
 /// surface goes on across the edge. A subset of `conservative`, certain of certain and possible of possible, to the bit.
 Truth thin(const MeshView& mesh, const Grid& grid);
 
-/// A plain scan of column centres: the oracle of Sampled, equal to it bit for bit. Any grid. Its arithmetic, operation by operation, is
-/// stated in host/reference/truth.cpp.
-VoxelBits sampled(const MeshView& mesh, const Grid& grid);
+/// Near and far depth maps on the host, as DepthRange holds them.
+struct Ranges {
+    std::vector<float> nearest, farthest;
+};
+
+/// A plain scan of column centres: the oracle of Sampled, equal to it bit for bit. Any grid; with `ranges` in slices of each column's own.
+/// Its arithmetic, operation by operation, is stated in host/reference/truth.cpp.
+VoxelBits sampled(const MeshView& mesh, const Grid& grid, bool span = false, const Ranges* ranges = nullptr);
+/// The depths of that scan, column by column: the oracle of depthRange.
+Ranges depthRange(const MeshView& mesh, const Grid& grid, bool span = false);
 
 /// Cells whose centre has an odd number of crossings before it in that scan: the oracle of Solid.
 VoxelBits solid(const MeshView& mesh, const Grid& grid);

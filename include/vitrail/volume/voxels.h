@@ -21,6 +21,7 @@
 #include <vitrail/core/queue.h>
 #include <vitrail/core/report.h>
 #include <vitrail/grid/grid.h>
+#include <vitrail/volume/depth_range.h>
 
 namespace vitrail {
 inline namespace v0 {
@@ -53,6 +54,7 @@ struct VoxelReport : CallReport {
     std::uint64_t outsideTriangles = 0;     ///< wholly outside the grid
     std::uint64_t openColumns = 0;          ///< of a solid: that cross the surface an odd number of times; what is inside them is a guess
     std::uint64_t guessedCells = 0;         ///< of solid_winding: whose winding number is nearer to a half than to a whole number
+    std::uint64_t clippedFragments = 0;     ///< with a DepthRange: that lie, wholly or in part, beyond the range of their column
     Uint3 grid{0};
     std::uint64_t occupied = 0;
     std::uint64_t bricks = 0;               ///< tiles of 8 x 8 x 32 cells that memory was taken for; 0: all of the grid's
@@ -71,6 +73,7 @@ public:
     ~Voxels();
 
     const Grid& grid() const;
+    const DepthRange* range() const;  ///< null: slices are uniform; else slice k of a column is k-th of its own range, not of the grid's
     Channel channels() const;
     const VoxelReport& report() const;
 
