@@ -17,7 +17,7 @@ inline void addMachineContext(const vitrail::DeviceInfo& device) {
 
 /// Google Benchmark's flags, `defaults` first. False where one is not known; a message is out then.
 inline bool initialize(int argc, char** argv, std::vector<std::string> defaults) {
-    std::vector<std::string> words{argv[0]};
+    static std::vector<std::string> words{argv[0]};  // the record names the program by a pointer into it
     words.insert(words.end(), defaults.begin(), defaults.end());
     words.insert(words.end(), argv + 1, argv + argc);
     std::vector<char*> arguments;
