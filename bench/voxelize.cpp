@@ -282,17 +282,23 @@ benchmark::internal::Benchmark* add(const std::string& name, std::function<void(
 std::vector<std::string> optionChoices(const Method& method, std::uint32_t resolution, bool scaling) {
     std::vector<std::string> choices{""};
     if (resolution != kSweepResolution || scaling) return choices;
+    const auto add = [&](const MethodOption& option, double value) {
+        if (!(value >= option.least && value <= option.most)) return;
+        char text[64];
+        std::snprintf(text, sizeof text, "%s=%g", std::string(option.name).c_str(), value);
+        choices.emplace_back(text);
+    };
     for (const MethodOption& option : method.options) {
         if (option.name.empty()) continue;
-        const double base = option.byDefault != 0 ? option.byDefault : option.most / 8;
-        const std::vector<double> values =
-            option.unit == "0 or 1" ? std::vector{1 - option.byDefault} : std::vector{0.5 * base, 2 * base, 4 * base};
-        for (const double value : values)
-            if (value >= option.least && value <= option.most) {
-                char text[64];
-                std::snprintf(text, sizeof text, "%s=%g", std::string(option.name).c_str(), value);
-                choices.emplace_back(text);
-            }
+        if (option.unit == "choice") {
+            for (double value = option.least; value <= option.most; ++value)
+                if (value != option.byDefault) add(option, value);
+        } else if (option.unit == "0 or 1") {
+            add(option, 1 - option.byDefault);
+        } else {
+            const double base = option.byDefault != 0 ? option.byDefault : option.most / 8;
+            for (const double factor : {0.5, 2.0, 4.0}) add(option, factor * base);
+        }
     }
     return choices;
 }

@@ -28,7 +28,10 @@ struct Options {
 Channel channelSet(const std::vector<std::string>& names) {
     Channel set = Channel::none;
     for (const std::string& name : names)
-        set = set | (name == "count" ? Channel::count : name == "normal" ? Channel::normal : Channel::material);
+        set = set | (name == "count"      ? Channel::count
+                    : name == "normal" ? Channel::normal
+                    : name == "colour" ? Channel::colour
+                                       : Channel::material);
     return set;
 }
 
@@ -73,6 +76,11 @@ std::vector<std::string> saveChannels(const std::filesystem::path& output, const
             normals.insert(normals.end(), {turned.x, turned.y, turned.z});
         }
         saveArray(beside("normal"), "<f4", normals, 3);
+    }
+    if (has(voxels.channels(), Channel::colour)) {
+        std::vector<float> colours;
+        for (const Float4& c : voxels.colours()) colours.insert(colours.end(), {c.x, c.y, c.z, c.w});
+        saveArray(beside("colour"), "<f4", colours, 4);
     }
     return files;
 }
@@ -149,7 +157,7 @@ void addVoxelize(CLI::App& app, Run& run) {
                      "count,normal,material: what occupied voxels know beside; with -o OUT.npy written beside it, one row a voxel")
         ->delimiter(',')
         ->allow_extra_args(false)
-        ->check(CLI::IsMember({"count", "normal", "material"}))
+        ->check(CLI::IsMember({"count", "normal", "material", "colour"}))
         ->type_name("A,B");
     verb->add_option("--up", options->up, "z: turn the output from y up to z up, (x, y, z) -> (x, -z, y)")
         ->check(CLI::IsMember({"y", "z"}))

@@ -13,14 +13,16 @@ inline namespace v0 {
 
 namespace {
 
-Buffer<float> uploadVectors(detail::Call& call, const Strided<Float3>& values, std::string_view purpose) {
-    Buffer<float> buffer = call.queue().workspace().take<float>(3 * values.count, purpose);
-    if (values.strideBytes == sizeof(Float3)) {
-        call.upload(buffer, static_cast<const float*>(values.data), 3 * values.count);
+template <class T>
+Buffer<float> uploadVectors(detail::Call& call, const Strided<T>& values, std::string_view purpose) {
+    constexpr std::size_t kParts = sizeof(T) / sizeof(float);
+    Buffer<float> buffer = call.queue().workspace().take<float>(kParts * values.count, purpose);
+    if (values.strideBytes == sizeof(T)) {
+        call.upload(buffer, static_cast<const float*>(values.data), kParts * values.count);
     } else {
-        std::vector<Float3> packed(values.count);
+        std::vector<T> packed(values.count);
         for (std::size_t i = 0; i < values.count; ++i) packed[i] = values[i];
-        call.upload(buffer, &packed[0].x, 3 * values.count);
+        call.upload(buffer, &packed[0].x, kParts * values.count);
     }
     return buffer;
 }
@@ -59,6 +61,13 @@ DeviceMesh::DeviceMesh(Queue& queue, const MeshView& mesh) {
         call.upload(materials_, mesh.materials.data(), mesh.materials.size());
     }
     if (!mesh.normals.empty()) normals_ = uploadVectors(call, mesh.normals, "vertex normals");
+    if (!mesh.texcoords.empty()) texcoords_ = uploadVectors(call, mesh.texcoords, "texture coordinates");
+    if (!mesh.colours.empty()) colours_ = uploadVectors(call, mesh.colours, "vertex colours");
+    if (mesh.texture != nullptr) {
+        texture_ = uploadVectors(call, Strided<Float4>(mesh.texture->pixels), "texture");
+        textureWidth_ = mesh.texture->width;
+        textureHeight_ = mesh.texture->height;
+    }
 }
 
 DeviceMesh::DeviceMesh(Buffer<float> positions, Buffer<std::uint32_t> indices, Buffer<std::uint32_t> materials, Buffer<float> normals, Bounds bounds)
@@ -81,7 +90,13 @@ DeviceMesh DeviceMesh::withOwnVertices(Queue& queue) const {
         return to;
     };
     Buffer<float> positions = copy(positions_, "vertex positions"), normals = copy(normals_, "vertex normals");
-    return DeviceMesh(std::move(positions), indices_.shared(), materials_.shared(), std::move(normals), bounds_);
+    DeviceMesh own(std::move(positions), indices_.shared(), materials_.shared(), std::move(normals), bounds_);
+    own.texcoords_ = texcoords_.shared();
+    own.colours_ = colours_.shared();
+    own.texture_ = texture_.shared();
+    own.textureWidth_ = textureWidth_;
+    own.textureHeight_ = textureHeight_;
+    return own;
 }
 
 void DeviceMesh::setPositions(Queue& queue, std::span<const Float3> positions, const Bounds& bounds) {
@@ -99,7 +114,9 @@ void DeviceMesh::setNormals(Queue& queue, std::span<const Float3> normals) {
     replaceVectors(queue, normals_, normals, vertexCount(), "normals");
 }
 
-std::uint64_t DeviceMesh::bytes() const { return positions_.bytes() + indices_.bytes() + materials_.bytes() + normals_.bytes(); }
+std::uint64_t DeviceMesh::bytes() const { 
+    return positions_.bytes() + indices_.bytes() + materials_.bytes() + normals_.bytes() + texcoords_.bytes() + colours_.bytes() + texture_.bytes();
+}
 
 }  // namespace v0
 }  // namespace vitrail

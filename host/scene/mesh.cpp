@@ -55,7 +55,7 @@ Bounds MeshView::bounds() const {
 }
 
 MeshView Mesh::view() const {
-    return {.positions = positions, .indices = indices, .materials = materials, .normals = normals, .texcoords = texcoords};
+    return {.positions = positions, .indices = indices, .materials = materials, .normals = normals, .texcoords = texcoords, .colours = colours};
 }
 
 void Mesh::append(const Mesh& other) {
@@ -99,6 +99,10 @@ void check(const MeshView& mesh) {
     checkLength("materials", mesh.materials.size(), corners / 3, "triangles");
     checkLength("normals", mesh.normals.count, mesh.positions.count, "vertices");
     checkLength("texture coordinates", mesh.texcoords.count, mesh.positions.count, "vertices");
+    checkLength("colours", mesh.colours.count, mesh.positions.count, "vertices");
+    if (mesh.texture != nullptr && (mesh.texture->pixels.empty() || mesh.texcoords.empty() ||
+                                    mesh.texture->pixels.size() != std::size_t(mesh.texture->width) * mesh.texture->height))
+        fail("a texture without pixels or texture coordinates", "both, or no texture");
 
     for (std::size_t corner = 0; corner < corners; ++corner) {
         const std::uint32_t vertex = mesh.index(corner);

@@ -52,7 +52,8 @@ void makeRank(VoxelsState& state) {
 
 std::uint64_t channelBytes(Channel channels, std::uint64_t occupied) {
     return occupied * ((has(channels, Channel::count) ? 4 : 0) + (has(channels, Channel::normal) ? 4 + 24 : 0) +
-                       (has(channels, Channel::material) ? 4 : 0));
+                       (has(channels, Channel::material) ? 4 : 0) + (has(channels, Channel::colour) ? 8 + 40 : 0) +
+                       (has(channels, Channel::orientation) ? 16 + 72 : 0));
 }
 
 ChannelSums beginChannels(Call& call, VoxelsState& state) {
@@ -72,12 +73,26 @@ ChannelSums beginChannels(Call& call, VoxelsState& state) {
         state.materials = workspace.take<std::uint32_t>(occupied, "channel material");
         call.fill(state.materials, 0xff);
     }
+    if (has(state.channels, Channel::colour)) {
+        state.colours = workspace.take<std::uint32_t>(2 * occupied, "channel colour");
+        sums.colourSums = workspace.take<std::int64_t>(5 * occupied, "sums of channel colour");
+        call.fill(sums.colourSums, 0);
+    }
+    if (has(state.channels, Channel::orientation)) {
+        state.orientations = workspace.take<std::uint32_t>(4 * occupied, "channel orientation");
+        sums.orientationSums = workspace.take<std::int64_t>(9 * occupied, "sums of channel orientation");
+        call.fill(sums.orientationSums, 0);
+    }
     return sums;
 }
 
 void endChannels(Call& call, VoxelsState& state, ChannelSums& sums) {
     if (has(state.channels, Channel::normal))
         call.launchRange(kVolume, "voxels_normals", *state.occupied, sums.normalSums, state.normals);
+    if (has(state.channels, Channel::colour))
+        call.launchRange(kVolume, "voxels_colours", *state.occupied, sums.colourSums, state.colours);
+    if (has(state.channels, Channel::orientation))
+        call.launchRange(kVolume, "voxels_orientations", *state.occupied, sums.orientationSums, state.orientations);
 }
 
 }  // namespace detail
@@ -114,6 +129,11 @@ const Buffer<std::uint32_t>& Voxels::countBuffer() const { return detail::channe
 const Buffer<std::uint32_t>& Voxels::normalBuffer() const { return detail::channelOf(*state_, Channel::normal, state_->normals, "normal"); }
 const Buffer<std::uint32_t>& Voxels::materialBuffer() const {
     return detail::channelOf(*state_, Channel::material, state_->materials, "material");
+}
+
+const Buffer<std::uint32_t>& Voxels::colourBuffer() const { return detail::channelOf(*state_, Channel::colour, state_->colours, "colour"); }
+const Buffer<std::uint32_t>& Voxels::orientationBuffer() const {
+    return detail::channelOf(*state_, Channel::orientation, state_->orientations, "orientation");
 }
 
 std::uint64_t Voxels::occupied() const {
@@ -166,6 +186,34 @@ const std::vector<Float3>& Voxels::normals() const {
     if (state_->hostNormals.empty())
         for (const std::uint32_t code : normalBuffer().read(state_->queue)) state_->hostNormals.push_back(unpackNormal(code));
     return state_->hostNormals;
+}
+
+const std::vector<Float4>& Voxels::colours() const {
+    if (state_->hostColours.empty()) {
+        const std::vector<std::uint32_t> words = colourBuffer().read(state_->queue);
+        for (std::size_t i = 0; i + 1 < words.size(); i += 2)
+            state_->hostColours.push_back(Float4(words[i] & 0xffff, words[i] >> 16, words[i + 1] & 0xffff, words[i + 1] >> 16) / 65535.0f);
+    }
+    return state_->hostColours;
+}
+
+const std::vector<Harmonics>& Voxels::orientations() const {
+    if (state_->hostOrientations.empty()) {
+        const std::vector<std::uint32_t> words = orientationBuffer().read(state_->queue);
+        for (std::size_t i = 0; i + 3 < words.size(); i += 4) {
+            float mean[8];
+            for (std::size_t k = 0; k < 8; ++k)
+                mean[k] = static_cast<float>(static_cast<std::int16_t>(words[i + k / 2] >> (k % 2 * 16))) / 32767.0f;
+            const bool any = (words[i] & 0xffffu) != 0x8000u;
+            // sqrt(1 / 4 pi); sqrt(3 / 4 pi); sqrt(15 / 4 pi), for the third of five sqrt(5 / 16 pi) and for the last sqrt(15 / 16 pi).
+            const auto [x, y, z, xy, yz, zz, xz, xxyy] = mean;
+            const float y1 = 0.48860251f, y2 = 1.09254843f;
+            state_->hostOrientations.push_back(any ? Harmonics{0.28209479f, y1 * y, y1 * z, y1 * x, y2 * xy, y2 * yz,
+                                                               0.31539157f * (3 * zz - 1), y2 * xz, 0.5f * y2 * xxyy}
+                                                   : Harmonics{});
+        }
+    }
+    return state_->hostOrientations;
 }
 
 const VoxelReport& Voxels::report() const {

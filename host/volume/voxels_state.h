@@ -21,10 +21,10 @@ struct VoxelsState {
     Grid grid;
     Channel channels = Channel::none;
     Buffer<std::uint32_t> bits;
-    Buffer<std::uint32_t> bricks, brickTiles;          // empty: dense
-    Buffer<std::uint32_t> counts, normals, materials;  // one entry an occupied voxel; empty unless asked for
-    std::optional<DepthRange> range;                   // empty: slices are uniform
-    Buffer<std::uint32_t> status;                      // kStatusWords; empty: nothing was counted
+    Buffer<std::uint32_t> bricks, brickTiles;                                 // empty: dense
+    Buffer<std::uint32_t> counts, normals, materials, colours, orientations;  // one entry an occupied voxel; empty unless asked for
+    std::optional<DepthRange> range;                                          // empty: slices are uniform
+    Buffer<std::uint32_t> status;                                             // kStatusWords; empty: nothing was counted
     std::shared_ptr<Record> record;
     std::string method, options;
     std::uint64_t triangles = 0;
@@ -38,6 +38,8 @@ struct VoxelsState {
     std::vector<std::uint32_t> hostBricks, hostTiles;  // of bricks; dense words are in `host`
     std::vector<std::uint32_t> hostCounts, hostMaterials;
     std::vector<Float3> hostNormals;
+    std::vector<Float4> hostColours;
+    std::vector<Harmonics> hostOrientations;
 
     VoxelsState(std::shared_ptr<QueueState> queueState, const Grid& g) : queue(std::move(queueState)), grid(g) {}
 };
@@ -50,7 +52,7 @@ void makeRank(VoxelsState& state);
 
 /// Sums of the channels while fragments are added; counts and materials go straight to their buffers in the state.
 struct ChannelSums {
-    Buffer<std::int64_t> normalSums;
+    Buffer<std::int64_t> normalSums, colourSums, orientationSums;
 };
 /// Takes and clears the buffers of the channels asked for; `state` has its rank.
 ChannelSums beginChannels(Call& call, VoxelsState& state);

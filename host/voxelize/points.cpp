@@ -23,9 +23,27 @@ const Buffer<std::uint32_t>& table(detail::Call& call, const detail::Program& pr
     });
 }
 
+Voxels voxelizePatches(Queue& queue, const DeviceMesh& mesh, const Grid& grid, const Points& method) {
+    if (!mesh.normals())
+        throw Error(ErrorCode::badInput, {"points: PN triangles want vertex normals, and the mesh has none", "", "", "withSmoothNormals(mesh)"});
+    return detail::runVoxelizer(queue, mesh, grid, method.channels, Points::name.data(), detail::checkOptions(method),
+                                [&](detail::Pass& pass, const detail::MarkChannels* channels) {
+                                    const detail::Program curved{"voxelize/curved_points", pass.program.options};
+                                    detail::Pass own{pass.call, pass.mesh, curved, pass.out, pass.tasks};
+                                    detail::launchMark(own, "curved_points", channels, method.safetyFactor, mesh.normals());
+                                });
+}
+
 }  // namespace
 
 Voxels voxelize(Queue& queue, const MeshInput& mesh, const Grid& grid, const Points& method) {
+    if (method.surface == Points::Surface::pnTriangles) {
+        if (grid.desc().kind == VITRAIL_GRID_PERSPECTIVE)
+            throw Error(ErrorCode::unsupported, {"points on PN triangles works on box and orthographic grids; this one is perspective", "", "",
+                                                 "triangles instead, subdivided"});
+        return mesh.device() != nullptr ? voxelizePatches(queue, *mesh.device(), grid, method)
+                                        : voxelizePatches(queue, DeviceMesh(queue, mesh.view()), grid, method);
+    }
     return detail::runVoxelizer(queue, mesh, grid, method.channels, Points::name.data(), detail::checkOptions(method),
                                 [&](detail::Pass& pass, const detail::MarkChannels* channels) {
                                     detail::launchMark(pass, "points", channels, method.safetyFactor, table(pass.call, pass.program));
@@ -33,11 +51,13 @@ Voxels voxelize(Queue& queue, const MeshInput& mesh, const Grid& grid, const Poi
 }
 
 std::uint64_t estimate(const MeshInput& mesh, const Grid& grid, const Points& method) {
-    return detail::estimateVoxelizer(mesh, grid, method.channels) + kWords * sizeof(std::uint32_t);
+    const bool patches = method.surface == Points::Surface::pnTriangles;
+    return detail::estimateVoxelizer(mesh, grid, method.channels) +
+           (patches ? (mesh.device() != nullptr ? 0 : mesh.view().normals.count * 12) : kWords * sizeof(std::uint32_t));
 }
 
 float safetyFactorFor(double missing, const MeshView& mesh, const Grid& grid) {
-    constexpr double kShare = 0.24;
+    constexpr double kShare = 0.21;
     const auto refuse = [&](const std::string& what, const std::string& remedy) {
         throw Error(ErrorCode::unsupported, {"safetyFactorFor: " + what, "grid: " + grid.text(), "", remedy});
     };

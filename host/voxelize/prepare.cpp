@@ -57,6 +57,10 @@ void failSwitch(const Method& row, const std::string& text) {
     throw Error(ErrorCode::badOption, {std::string(row.name) + ": \"" + text + "\" is neither 0 (off) nor 1 (on)", "", "", optionsOf(row)});
 }
 
+void failNotWhole(const Method& row, const std::string& text) {
+    throw Error(ErrorCode::badOption, {std::string(row.name) + ": \"" + text + "\" is no whole number", "", "", optionsOf(row)});
+}
+
 void failUnknownOption(const Method& row, const std::string& text) {
     throw Error(ErrorCode::badOption, {std::string(row.name) + " has no option \"" + text.substr(0, text.find('=')) + "\"", "", "", optionsOf(row)});
 }
@@ -79,8 +83,9 @@ std::uint32_t mirrored(const Grid& grid) {
 
 namespace {
 
-std::uint64_t meshBytes(const MeshView& mesh, bool materials) {
-    return mesh.positions.count * 12 + mesh.triangleCount() * (materials ? 16 : 12);
+std::uint64_t meshBytes(const MeshView& mesh, bool materials, bool colours) {
+    const std::uint64_t texture = mesh.texture != nullptr ? mesh.texture->pixels.size() * sizeof(Float4) + mesh.texcoords.count * 8 : 0;
+    return mesh.positions.count * 12 + mesh.triangleCount() * (materials ? 16 : 12) + (colours ? mesh.colours.count * 16 + texture : 0);
 }
 
 /// Bits that take more lie in bricks; below, the second pass over the triangles costs more than the clear of empty tiles.
@@ -102,7 +107,8 @@ std::uint64_t bytesOf(const MeshInput& mesh, const Grid& grid, Channel channels,
         bytes += groupsOfTiles(grid) * 12 + words / VITRAIL_WORDS_PER_TILE * 4;
     }
     bytes += words * 4;
-    if (mesh.device() == nullptr) bytes += meshBytes(mesh.view(), has(channels, Channel::material) && !mesh.view().materials.empty());
+    if (mesh.device() == nullptr)
+        bytes += meshBytes(mesh.view(), has(channels, Channel::material) && !mesh.view().materials.empty(), has(channels, Channel::colour));
     // A surface occupies about twice a face of the grid for a compact body; eight faces leave room for most scenes.
     if (channels != Channel::none) bytes += words / VITRAIL_WORDS_PER_RANK * 4 + channelBytes(channels, std::min(grid.voxelCount(), 8 * face));
     return bytes;
@@ -152,12 +158,16 @@ std::uint64_t estimateVoxelizer(const MeshInput& mesh, const Grid& grid, Channel
     return bytesOf(mesh, grid, channels, grid.wordCount() * 4 > kDenseMost);
 }
 
-const DeviceMesh& onDevice(Queue& queue, const MeshInput& input, bool materials, std::optional<DeviceMesh>& uploaded) {
+const DeviceMesh& onDevice(Queue& queue, const MeshInput& input, Channel channels, std::optional<DeviceMesh>& uploaded) {
     if (input.device() != nullptr) return *input.device();
     MeshView view = input.view();
     view.normals = {};
-    view.texcoords = {};
-    if (!materials) view.materials = {};
+    if (!has(channels, Channel::colour)) {
+        view.colours = {};
+        view.texture = nullptr;
+    }
+    if (view.texture == nullptr) view.texcoords = {};
+    if (!has(channels, Channel::material)) view.materials = {};
     return uploaded.emplace(queue, view);
 }
 
@@ -174,7 +184,7 @@ Voxels runVoxelizer(Queue& queue, const MeshInput& input, const Grid& grid, Chan
     Call call(queue, std::string("voxelizing ") + std::to_string(input.triangleCount()) + " triangles");
     call.step(name, 0.0);
     std::optional<DeviceMesh> uploaded;
-    const DeviceMesh& mesh = onDevice(queue, input, has(channels, Channel::material), uploaded);
+    const DeviceMesh& mesh = onDevice(queue, input, channels, uploaded);
 
     Workspace& workspace = queue.workspace();
     auto out = std::make_unique<VoxelsState>(queue.state(), grid);
@@ -202,7 +212,8 @@ Voxels runVoxelizer(Queue& queue, const MeshInput& input, const Grid& grid, Chan
     if (channels != Channel::none) {
         makeRank(*out);
         ChannelSums sums = beginChannels(call, *out);
-        const MarkChannels to{.counts = &out->counts, .normalSums = &sums.normalSums, .materials = &out->materials};
+        const MarkChannels to{.counts = &out->counts, .normalSums = &sums.normalSums, .materials = &out->materials,
+                              .colourSums = &sums.colourSums, .orientationSums = &sums.orientationSums};
         mark(pass, &to);
         endChannels(call, *out, sums);
     }

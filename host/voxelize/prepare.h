@@ -40,6 +40,7 @@ std::string checkOptions(const M& method) {
 /// The number in "name=value", which is an option of `row`. Throws Error (badOption).
 double optionValue(const Method& row, const std::string& text);
 [[noreturn]] void failSwitch(const Method& row, const std::string& text);
+[[noreturn]] void failNotWhole(const Method& row, const std::string& text);
 [[noreturn]] void failUnknownOption(const Method& row, const std::string& text);
 
 /// Sets the members that "name=value" speak of. Throws Error (badOption).
@@ -54,6 +55,8 @@ void setOptions(M& method, std::span<const std::string> options) {
             // Before a switch makes a 1 of everything else.
             if (std::is_same_v<std::remove_reference_t<decltype(member)>, bool> && value != 0 && value != 1) failSwitch(*findMethod(M::name), text);
             member = static_cast<std::remove_reference_t<decltype(member)>>(value);
+            if (!std::is_floating_point_v<std::remove_reference_t<decltype(member)>> && static_cast<double>(member) != value)
+                failNotWhole(*findMethod(M::name), text);
         });
         if (!known) failUnknownOption(*findMethod(M::name), text);
     }
@@ -82,6 +85,7 @@ struct MarkChannels {
     const Buffer<std::uint32_t>* counts = nullptr;
     const Buffer<std::int64_t>* normalSums = nullptr;
     const Buffer<std::uint32_t>* materials = nullptr;
+    const Buffer<std::int64_t>*colourSums = nullptr, *orientationSums = nullptr;
     const Buffer<std::uint32_t>*list = nullptr, *cursor = nullptr;  // triangles of each voxel, and where its next one goes
 };
 
@@ -91,8 +95,8 @@ struct Scratch {
     bool bricks = true;       ///< whether it can work on bricks
 };
 
-/// The mesh on the device, where it is already or as `uploaded` for the call.
-const DeviceMesh& onDevice(Queue& queue, const MeshInput& mesh, bool materials, std::optional<DeviceMesh>& uploaded);
+/// The mesh on the device, where it is already or as `uploaded` for the call, with what the channels need.
+const DeviceMesh& onDevice(Queue& queue, const MeshInput& mesh, Channel channels, std::optional<DeviceMesh>& uploaded);
 
 /// Checks, uploads, takes memory, and calls `mark(pass, null)` for the bits and, with channels, `mark(pass, channels)`. Where bits lie in
 /// bricks it calls `mark(pass, null)` once before with no pass.out.bits, to find the tiles that need one.
@@ -113,9 +117,11 @@ void withMarkBuffers(Pass& pass, const MarkChannels* channels, Run&& run) {
     const DeviceMesh& mesh = pass.mesh;
     const Buffer<std::uint32_t> empty;
     const Buffer<std::int64_t> emptySums;
-    run(mesh.positions(), mesh.indices(), mesh.vertexCount(), mesh.materials(), pass.out.bits, pass.out.bricks, channels != nullptr ? pass.out.rank : empty,
+    run(mesh.positions(), mesh.indices(), mesh.vertexCount(), mesh.materials(), mesh.colours(), mesh.texcoords(), mesh.texture(),
+        mesh.textureWidth(), mesh.textureHeight(), pass.out.bits, pass.out.bricks, channels != nullptr ? pass.out.rank : empty,
         to.counts ? *to.counts : empty, to.normalSums ? *to.normalSums : emptySums, to.materials ? *to.materials : empty,
-        to.list ? *to.list : empty, to.cursor ? *to.cursor : empty);
+        to.colourSums ? *to.colourSums : emptySums, to.orientationSums ? *to.orientationSums : emptySums, to.list ? *to.list : empty,
+        to.cursor ? *to.cursor : empty);
 }
 
 /// "sampled: bits"

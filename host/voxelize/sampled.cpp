@@ -38,7 +38,7 @@ DepthRange depthRange(Queue& queue, const MeshInput& mesh, const Grid& grid, boo
     if (mesh.triangleCount() == 0) throw Error(ErrorCode::badInput, {"depth range: the mesh has no triangles", "", "", "a mesh with faces"});
     detail::Call call(queue, "the depth range of " + std::to_string(mesh.triangleCount()) + " triangles");
     std::optional<DeviceMesh> uploaded;
-    const DeviceMesh& onDevice = detail::onDevice(queue, mesh, false, uploaded);
+    const DeviceMesh& onDevice = detail::onDevice(queue, mesh, Channel::none, uploaded);
     detail::VoxelsState state(queue.state(), grid);  // without bits
     Workspace& workspace = queue.workspace();
     Buffer<float> nearest = workspace.take<float>(columns, "near depth map"), farthest = workspace.take<float>(columns, "far depth map");

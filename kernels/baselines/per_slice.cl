@@ -20,7 +20,7 @@ kernel void per_slice_mark(const vitrail_GridDesc grid, uint slice, global uint*
         if (slice < from || slice > to) continue;
         Slab slab;
         Share share;
-        samples_share(rank ? &channels : 0, positions, corner, materials, triangle, &share);
+        channels_share(rank ? &channels : 0, &grid, positions, corner, triangle, &share);
         slab_begin(&grid, &s, REAL(0), &slab);
         slab_at(&s, slice, &slab);
         samples_rows(&grid, &s, s.xLeast, s.xMost, slab.yLeast, slab.yMost, &slab, &bits, &share);

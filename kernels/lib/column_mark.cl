@@ -13,8 +13,8 @@ typedef struct {
     const vitrail_GridDesc* grid;
     Bits bits;                 // unless there are channels
     const Channels* channels;
-    long normal[3];
-    uint material, triangle;
+    uint triangle;
+    Share share;
 } Mark;
 
 // Marks cells of four columns in a tile.
@@ -39,8 +39,8 @@ INLINE void column_mark_row(const Mark* mark, int x, int y, int8 first, int8 end
     }
     for (int lane = 0; lane < LANES; ++lane)
         for (int z = lanes_int_at(&first, lane); z < lanes_int_at(&end, lane); ++z)
-            channels_add(mark->channels, bits_word(mark->grid, mark->channels->bricks, (uint)(x + lane), (uint)y, (uint)z), (uint)z & 31u,
-                         mark->normal, mark->material, mark->triangle);
+            channels_add(&mark->share, bits_word(mark->grid, mark->channels->bricks, (uint)(x + lane), (uint)y, (uint)z), (uint)(x + lane), (uint)y,
+                         (uint)z, 1u);
 }
 
 // Marks the cells of the triangle in `lane` in columns [xLeast, xMost] x [yLeast, yMost].
@@ -118,7 +118,7 @@ INLINE void column_blocks(const Runs* runs, int lane, int xLeast, int xMost, int
 
 // One of eight triangles, or one block of it when it is big (block >= 0).
 INLINE void column_triangle(bool thin, const Runs* runs, int lane, global const float* positions, global const uint* indices, uint vertexCount,
-                                  global const uint* materials, int block, Mark* mark, global uint2* tasks, uint taskCapacity,
+                                  int block, Mark* mark, global uint2* tasks, uint taskCapacity,
                                   global uint* status) {
     const int state = lanes_int_at(&runs->state, lane);
     if (state == 0) return;
@@ -142,8 +142,7 @@ INLINE void column_triangle(bool thin, const Runs* runs, int lane, global const 
     if (mark->channels) {
         uint corner[3];
         triangle_corners(positions, indices, vertexCount, mark->triangle, corner);
-        if (mark->channels->normalSum) channels_normal(triangle_normal(positions, corner), mark->normal);
-        if (mark->channels->material && materials) mark->material = materials[mark->triangle];
+        channels_share(mark->channels, mark->grid, positions, corner, mark->triangle, &mark->share);
     }
     if ((xMost - xLeast + 1) * (yMost - yLeast + 1) <= COLUMN_FEW)
         column_columns(runs, lane, xLeast, xMost, yLeast, yMost, mark, true);
@@ -153,14 +152,17 @@ INLINE void column_triangle(bool thin, const Runs* runs, int lane, global const 
 
 #define COLUMN_MARK(thin)                                                                                                            \
     const Channels channels = MARK_CHANNELS;                                                                                         \
-    Mark mark = {&grid, MARK_BITS, rank ? &channels : 0, {0, 0, 0}, 0u, 0u};                                                              \
+    const Bits bits = MARK_BITS;                                                                                                     \
+    Mark mark;                                                                                                                       \
+    mark.grid = &grid;                                                                                                               \
+    mark.bits = bits;                                                                                                                \
+    mark.channels = rank ? &channels : 0;                                                                                            \
     MARK_EIGHTS(triangles, blocks, live, {                                                                                           \
         Runs runs;                                                                                                                   \
         run_setup(thin, &grid, positions, indices, vertexCount, triangles, live, &runs);                                             \
         for (int lane = 0; lane < LANES; ++lane) {                                                                                   \
             mark.triangle = triangles[lane];                                                                                         \
-            column_triangle(thin, &runs, lane, positions, indices, vertexCount, materials, blocks[lane], &mark, tasks, taskCapacity, \
-                            status);                                                                                                 \
+            column_triangle(thin, &runs, lane, positions, indices, vertexCount, blocks[lane], &mark, tasks, taskCapacity, status);   \
         }                                                                                                                            \
     })
 

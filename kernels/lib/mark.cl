@@ -9,9 +9,11 @@
 
 // What every such kernel reads and writes.
 #define MARK_BUFFERS                                                                                                                 \
-    global const float *positions, global const uint *indices, uint vertexCount, global const uint *materials, global uint *words,   \
-        global uint2 *bricks, global const uint *rank, global uint *counts, global long *normalSums, global uint *materialIds, global uint *list,          \
-        global uint *cursor
+    global const float *positions, global const uint *indices, uint vertexCount, global const uint *materials,                       \
+        global const float *colours, global const float *texcoords, global const float *texture, uint textureWidth,                  \
+        uint textureHeight, global uint *words, global uint2 *bricks, global const uint *rank, global uint *counts,                  \
+        global long *normalSums, global uint *materialIds, global long *colourSums, global long *orientationSums,                    \
+        global uint *list, global uint *cursor
 
 #define MARK_PARAMETERS \
     MARK_BUFFERS, global uint2 *tasks, uint taskCapacity, global uint *status, uint first, uint groups, ulong count, uint perItem
@@ -20,10 +22,14 @@
 #define MARK_BITS {words, bricks}
 
 // Buffers of the channels asked for; null in a launch that sets bits.
-#define MARK_CHANNELS {words, bricks, rank, counts, normalSums, materialIds, list, cursor}
+#define MARK_CHANNELS                                                                                                             \
+    {words, bricks, rank, counts, normalSums, materialIds, colourSums, orientationSums, list, cursor, materials, colours, texcoords, texture, \
+     textureWidth, textureHeight}
 
 // A voxelizer without channels takes no notice of their buffers.
-#define MARK_WITHOUT_CHANNELS (void)materials, (void)rank, (void)counts, (void)normalSums, (void)materialIds, (void)list, (void)cursor
+#define MARK_WITHOUT_CHANNELS                                                                                                        \
+    (void)materials, (void)colours, (void)texcoords, (void)texture, (void)textureWidth, (void)textureHeight, (void)rank, (void)counts, \
+        (void)normalSums, (void)materialIds, (void)colourSums, (void)orientationSums, (void)list, (void)cursor
 
 // Statement for every triangle, block >= 0 when it is a task.
 #define MARK_EACH(triangle, block, statement)                                                                          \

@@ -76,6 +76,7 @@ INLINE uint runs_rows(const uint flags, const vitrail_GridDesc* grid, const Samp
             low = real_max(low, REAL(0));
             high = span ? real_min(high, depth) : low;
             z = span ? real_min(real_max(z, low), high) : low;
+            const uint uniform = samples_slice(grid, z);
             if (make || own) {
                 const size_t column = (size_t)y * grid->size.x + (uint)x;
                 float least = (float)(low / depth), most = span ? (float)(high / depth) : least;
@@ -105,8 +106,8 @@ INLINE uint runs_rows(const uint flags, const vitrail_GridDesc* grid, const Samp
                 bits_set_run(bits, grid, (uint)x, (uint)y, zFirst, zLast);
             else
                 for (uint k = zFirst; k <= zLast; ++k)
-                    channels_add(share->channels, bits_word(grid, share->channels->bricks, (uint)x, (uint)y, k), k & 31u, share->normal,
-                                 share->material, share->triangle);
+                    channels_add_at(share, bits_word(grid, share->channels->bricks, (uint)x, (uint)y, k), k & 31u, (uint)x, (uint)y,
+                                    own ? uniform : k, 1u);
         }
     }
     return clipped;

@@ -268,24 +268,6 @@ INLINE void slab_columns(const Samples* s, const Slab* slab, int y, int* from, i
     *to = min(*to, real_floor_int(most - (REAL(0.5f) - SLAB_MARGIN)) + 1);
 }
 
-// What a triangle's fragments are added to channels with; channels null: they set bits.
-typedef struct {
-    const Channels* channels;
-    long normal[3];
-    uint material, triangle;
-} Share;
-
-INLINE void samples_share(const Channels* channels, global const float* positions, const uint corner[3], global const uint* materials,
-                          uint triangle, Share* share) {
-    share->channels = channels;
-    share->normal[0] = share->normal[1] = share->normal[2] = 0;
-    share->material = 0u;
-    share->triangle = triangle;
-    if (!channels) return;
-    if (channels->normalSum) channels_normal(triangle_normal(positions, corner), share->normal);
-    if (channels->material && materials) share->material = materials[triangle];
-}
-
 // The columns of row y, from `from` up to `to`, that the triangle may cover; all that it does unless a corner is behind the eye. `q`: its
 // corners seen from the row. False when there are none.
 INLINE bool samples_row(const vitrail_GridDesc* grid, const Samples* s, int xLeast, int xMost, int y, Seen* q, int* from, int* to) {
@@ -362,8 +344,7 @@ INLINE void samples_rows(const vitrail_GridDesc* grid, const Samples* s, int xLe
             if (!share->channels)
                 bits_set(bits, grid, (uint)x, (uint)y, slice, 1u << (slice & 31u));
             else
-                channels_add(share->channels, bits_word(grid, share->channels->bricks, (uint)x, (uint)y, slice), slice & 31u, share->normal,
-                             share->material, share->triangle);
+                channels_add(share, bits_word(grid, share->channels->bricks, (uint)x, (uint)y, slice), (uint)x, (uint)y, slice, 1u);
         }
     }
 }

@@ -49,3 +49,32 @@ kernel void voxels_normals(global const long* sums, global uint* normals, ulong 
         normals[i] = frame_pack_normal((float3)(x, y, z));
     }
 }
+
+// Mean colour, four unsigned 16-bit parts of 1, of `sums`: five a voxel (lib/channels.cl).
+kernel void voxels_colours(global const long* sums, global uint* colours, ulong count, uint perItem) {
+    FOR_RANGE(i, count, perItem) {
+        global const long* s = sums + 5 * i;
+        const ulong whole = max((ulong)s[4], 1ul) << 24;
+        const uint shift = whole >> 48 != 0ul ? 16u : 0u;  // so that the product does not overflow
+        uint part[4];
+        for (int k = 0; k < 4; ++k) {
+            const ulong sum = min((ulong)max(s[k], 0l), whole) >> shift;
+            part[k] = (uint)((sum * 65535ul + (whole >> shift) / 2ul) / (whole >> shift));
+        }
+        vstore2((uint2)(part[0] | (part[1] << 16), part[2] | (part[3] << 16)), i, colours);
+    }
+}
+
+// Mean polynomials of the normal, eight signed 16-bit parts of 1, of `sums`: nine a voxel (lib/channels.cl). Without a normal the first is
+// -32768.
+kernel void voxels_orientations(global const long* sums, global uint* orientations, ulong count, uint perItem) {
+    FOR_RANGE(i, count, perItem) {
+        global const long* s = sums + 9 * i;
+        const float scale = s[8] > 0 ? 32767.0f / ((float)s[8] * 16777216.0f) : 0.0f;
+        uint word[4];
+        for (int k = 0; k < 4; ++k)
+            word[k] = ((uint)(int)rint((float)s[2 * k] * scale) & 0xffffu) | ((uint)(int)rint((float)s[2 * k + 1] * scale) << 16);
+        if (s[8] == 0) word[0] = 0x8000u;
+        vstore4((uint4)(word[0], word[1], word[2], word[3]), i, orientations);
+    }
+}

@@ -11,8 +11,7 @@
 // One triangle, or one block of a big one (block >= 0). Returns without marking when it is not usable.
 static inline void sampled_triangle(const vitrail_GridDesc* grid, uint flags, global uint* nearest, global uint* farthest,
                                     global const float* positions, global const uint* indices, uint vertexCount, uint triangle, int block,
-                                    const Bits* bits, const Channels* channels, global const uint* materials, global uint2* tasks,
-                                    uint taskCapacity, global uint* status) {
+                                    const Bits* bits, const Channels* channels, global uint2* tasks, uint taskCapacity, global uint* status) {
     uint corner[3];
     Samples s;
     const int state = samples_load(grid, positions, indices, vertexCount, triangle, false, corner, &s);
@@ -21,7 +20,7 @@ static inline void sampled_triangle(const vitrail_GridDesc* grid, uint flags, gl
     int xLeast = s.xLeast, xMost = s.xMost, yLeast = s.yLeast, yMost = s.yMost;
     if (tasks_columns(&xLeast, &xMost, &yLeast, &yMost, block, tasks, taskCapacity, status, triangle)) return;
     Share share;
-    samples_share(channels, positions, corner, materials, triangle, &share);
+    channels_share(channels, grid, positions, corner, triangle, &share);
     if (flags == 0u) {
         samples_rows(grid, &s, xLeast, xMost, yLeast, yMost, 0, bits, &share);
         return;
@@ -47,6 +46,6 @@ kernel void sampled_mark(const vitrail_GridDesc grid, uint flags, global uint* n
         for (int lane = 0; lane < LANES; ++lane)
             if (lanes_int_at(&live, lane))
                 sampled_triangle(&grid, flags, nearest, farthest, positions, indices, vertexCount, triangles[lane], blocks[lane], &bits,
-                                 rank ? &channels : 0, materials, tasks, taskCapacity, status);
+                                 rank ? &channels : 0, tasks, taskCapacity, status);
     })
 }

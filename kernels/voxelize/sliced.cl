@@ -50,7 +50,7 @@ kernel void sliced_mark(const vitrail_GridDesc grid, float extension, global con
         Slab slab;
         Share share;
         samples_load(&grid, positions, indices, vertexCount, first + i, false, corner, &s);
-        samples_share(rank ? &channels : 0, positions, corner, materials, first + i, &share);
+        channels_share(rank ? &channels : 0, &grid, positions, corner, first + i, &share);
         slab_begin(&grid, &s, REAL(extension) / REAL(100), &slab);
         slab_range(&grid, &s, slab.extension, &from, &to);
         for (; task < next; ++task) {

@@ -35,7 +35,7 @@ int main() {
             for (const Method& row : methods()) {
                 if (!isVoxelizer(row)) continue;
                 const Voxelizer method = voxelizerByName(
-                    row.name, {}, row.channels ? Channel::count | Channel::normal | Channel::material : Channel::none);
+                    row.name, {}, row.channels ? Channel::count | Channel::normal | Channel::material | Channel::colour | Channel::orientation : Channel::none);
                 std::vector<Grid> grids{Grid::box(Float3(0), 1.0f, size)};
                 if (row.cameraGrids) grids.push_back(test::cameraGrids({Float3(0), Float3(size)}, Uint3(7, 6, 5))[2]);
                 for (const Grid& grid : grids) {
@@ -44,7 +44,7 @@ int main() {
                     std::printf("%s %s: %llu voxels\n", voxels.report().method.c_str(), grid.text().c_str(),
                                 static_cast<unsigned long long>(voxels.occupied()));
                 }
-                const Voxels voxels = voxelize(queue, row.name == "points" ? longer : large, wide, method);
+                const Voxels voxels = voxelize(queue, row.name == "points" || row.name == "placed_points" ? longer : large, wide, method);
                 std::printf("%s, large: %llu voxels\n", voxels.report().method.c_str(),
                             static_cast<unsigned long long>(voxels.occupied()));
                 queue.setStorage(Storage::bricks);
@@ -58,6 +58,9 @@ int main() {
 
         {
             const Mesh bent = withSmoothNormals(large);
+            const Voxels patches =
+                voxelize(queue, bent, wide, Points{.channels = Channel::normal, .surface = Points::Surface::pnTriangles});
+            std::printf("points on patches: %llu voxels\n", static_cast<unsigned long long>(patches.occupied()));
             Skin rig;
             rig.positions = bent.positions;
             rig.normals = bent.normals;

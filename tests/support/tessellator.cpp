@@ -89,7 +89,9 @@ Factors factorsOf(const std::array<Double3, 3>& p, double safetyFactor) {
         const Double3 d = glm::abs(p[(e + 1) % 3] - p[e]);
         t[e] = safetyFactor * std::max({d.x, d.y, d.z});
     }
-    Factors f{{}, 0, 0};
+    Factors f{{1, 1, 1}, 1, 0};
+    if (std::max({t[0], t[1], t[2]}) <= 1) return f;
+    for (double& one : t) one *= 1.15;
     while (std::max({t[0], t[1], t[2]}) > 64) {
         for (double& one : t) one /= 2;
         ++f.halvings;
@@ -99,7 +101,11 @@ Factors factorsOf(const std::array<Double3, 3>& p, double safetyFactor) {
     return f;
 }
 
-std::vector<Double3> pointsOf(const std::array<Double3, 3>& pVoxel, double safetyFactor) {
+namespace {
+
+/// The parts that are tessellated, and the pattern of each.
+template <class Visit>
+void forMicroTriangles(const std::array<Double3, 3>& pVoxel, double safetyFactor, Visit&& visit) {
     const Factors f = factorsOf(pVoxel, safetyFactor);
     std::vector<std::array<Double3, 3>> parts{pVoxel};
     for (int i = 0; i < f.halvings; ++i) {
@@ -110,14 +116,37 @@ std::vector<Double3> pointsOf(const std::array<Double3, 3>& pVoxel, double safet
         }
         parts = std::move(next);
     }
-    std::vector<Double3> points;
     const std::vector<MicroTriangle> pattern = tessellate(f.edges, f.inside);
     for (const auto& part : parts)
-        for (const MicroTriangle& micro : pattern) {
-            const Double3 weight = (micro[0] + micro[1] + micro[2]) / 3.0;
-            points.push_back(part[0] * weight.x + part[1] * weight.y + part[2] * weight.z);
-        }
+        for (const MicroTriangle& micro : pattern) visit(part, micro);
+}
+
+Double3 weighted(const std::array<Double3, 3>& corner, Double3 weight) {
+    return corner[0] * weight.x + corner[1] * weight.y + corner[2] * weight.z;
+}
+
+}  // namespace
+
+std::vector<Double3> pointsOf(const std::array<Double3, 3>& pVoxel, double safetyFactor) {
+    std::vector<Double3> points;
+    forMicroTriangles(pVoxel, safetyFactor, [&](const auto& part, const MicroTriangle& micro) {
+        points.push_back(weighted(part, (micro[0] + micro[1] + micro[2]) / 3.0));
+    });
     return points;
+}
+
+std::vector<std::array<Double3, 3>> microTrianglesOf(const std::array<Double3, 3>& pVoxel, double safetyFactor) {
+    std::vector<std::array<Double3, 3>> all;
+    forMicroTriangles(pVoxel, safetyFactor, [&](const auto& part, const MicroTriangle& micro) {
+        all.push_back({weighted(part, micro[0]), weighted(part, micro[1]), weighted(part, micro[2])});
+    });
+    return all;
+}
+
+std::vector<Double3> microVerticesOf(const std::array<Double3, 3>& pVoxel, double safetyFactor) {
+    std::vector<Double3> vertices;
+    for (const auto& micro : microTrianglesOf(pVoxel, safetyFactor)) vertices.insert(vertices.end(), micro.begin(), micro.end());
+    return vertices;
 }
 
 }  // namespace vitrail::test

@@ -25,4 +25,8 @@ Factors factorsOf(const std::array<Double3, 3>& pVoxel, double safetyFactor);
 /// Centroids of all micro-triangles of a triangle given in voxel coordinates.
 std::vector<Double3> pointsOf(const std::array<Double3, 3>& pVoxel, double safetyFactor);
 
+/// All micro-triangles of a triangle given in voxel coordinates, and their vertices one after the other.
+std::vector<std::array<Double3, 3>> microTrianglesOf(const std::array<Double3, 3>& pVoxel, double safetyFactor);
+std::vector<Double3> microVerticesOf(const std::array<Double3, 3>& pVoxel, double safetyFactor);
+
 }  // namespace vitrail::test

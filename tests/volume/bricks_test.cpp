@@ -67,13 +67,13 @@ void expectSame(const Voxels& bricks, const Voxels& dense) {
 }
 
 class EveryVoxelizerInBricks : public ::testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Methods, EveryVoxelizerInBricks, ::testing::Values("conservative", "thin", "sampled", "sliced", "per_slice", "points", "solid"),
+INSTANTIATE_TEST_SUITE_P(Methods, EveryVoxelizerInBricks, ::testing::Values("conservative", "thin", "sampled", "sliced", "per_slice", "points", "placed_points", "solid"),
                          [](const auto& info) { return std::string(info.param); });
 
 TEST(Bricks, AllVoxelizersAreTested) {
     for (const Method& row : methods())
         if (isVoxelizer(row)) {
-            EXPECT_TRUE(std::string(" conservative thin sampled sliced per_slice points solid solid_winding solid_slicemap ").find(" " + std::string(row.name) + " ") !=
+            EXPECT_TRUE(std::string(" conservative thin sampled sliced per_slice points placed_points solid solid_winding solid_slicemap ").find(" " + std::string(row.name) + " ") !=
                         std::string::npos)
                 << row.name;
         }
@@ -82,13 +82,15 @@ TEST(Bricks, AllVoxelizersAreTested) {
 TEST_P(EveryVoxelizerInBricks, HoldTheSameVoxelsAndChannels) {
     const Method& row = *findMethod(GetParam());
     const Voxelizer method =
-        voxelizerByName(row.name, {}, row.channels ? Channel::count | Channel::normal | Channel::material : Channel::none);
+        voxelizerByName(row.name, {}, row.channels ? Channel::count | Channel::normal | Channel::material | Channel::colour | Channel::orientation
+                                              : Channel::none);
     const Uint3 size(61, 50, 131);
     // A body with room in and around it, one cut by the grid, and triangles of all sizes with one over the whole grid.
     Mesh soup = test::soup(17, 60, size, 12);
     test::addTriangle(soup, {-30, 1, 1}, {90, 2, 100}, {1, 95, 3});
     test::addTriangle(soup, {2, 2, 2}, {2, 2, 2}, {5, 2, 2});
     test::addTriangle(soup, {50, 500, 50}, {51, 500, 50}, {50, 501, 50});
+    for (const Float3 p : soup.positions) soup.colours.push_back(Float4(glm::fract(p / 64.0f), 0.5f));
     const Mesh bodies[] = {test::closedTorus(Float3(30, 24, 60), 20, 4, Float3(1, 2, 3), 40, 20),
                            test::closedTorus(Float3(30, 24, 120), 25, 6, Float3(3, 1, 2), 24, 12), soup};
     for (const Precision precision : {Precision::best, Precision::single}) {

@@ -20,6 +20,7 @@ namespace {
 
 using test::queue;
 
+constexpr double kPi = 3.14159265358979323846;
 constexpr Channel kAll = Channel::count | Channel::normal | Channel::material;
 
 class EveryVoxelizer : public ::testing::TestWithParam<const char*> {
@@ -27,14 +28,14 @@ protected:
     Voxelizer method(Channel channels = Channel::none) const { return voxelizerByName(GetParam(), {}, channels); }
 };
 INSTANTIATE_TEST_SUITE_P(Methods, EveryVoxelizer,
-                         ::testing::Values("conservative", "thin", "sampled", "sliced", "per_slice", "points"),
+                         ::testing::Values("conservative", "thin", "sampled", "sliced", "per_slice", "points", "placed_points"),
                          [](const auto& info) { return std::string(info.param); });
 
 TEST(Methods, AllAreTested) {
     for (const Method& row : methods())
         if (row.family == Family::surfaceVoxels) {
             EXPECT_TRUE(row.name == "conservative" || row.name == "thin" || row.name == "sampled" || row.name == "sliced" ||
-                        row.name == "per_slice" || row.name == "points")
+                        row.name == "per_slice" || row.name == "points" || row.name == "placed_points")
                 << row.name;
         }
 }
@@ -49,8 +50,9 @@ Fragments fragmentsOf(const Mesh& mesh, const Grid& grid, std::string_view metho
     for (std::uint32_t t = 0; t < mesh.triangleCount(); ++t) {
         const std::array<Float3, 3> p{mesh.positions[mesh.indices[3 * t]], mesh.positions[mesh.indices[3 * t + 1]],
                                       mesh.positions[mesh.indices[3 * t + 2]]};
-        if (method == "points") {
-            for (const Double3& q : test::pointsOf({grid.toVoxel(p[0]), grid.toVoxel(p[1]), grid.toVoxel(p[2])}, 1))
+        if (method == "points" || method == "placed_points") {
+            const std::array<Double3, 3> corners{grid.toVoxel(p[0]), grid.toVoxel(p[1]), grid.toVoxel(p[2])};
+            for (const Double3& q : method == "points" ? test::pointsOf(corners, 1) : test::microVerticesOf(corners, 1))
                 if (q.x >= 0 && q.y >= 0 && q.z >= 0 && q.x < size.x && q.y < size.y && q.z < size.z)
                     ++all[{unsigned(q.x), unsigned(q.y), unsigned(q.z)}][t];
             continue;
@@ -95,6 +97,88 @@ TEST_P(EveryVoxelizer, ChannelsCombineFragments) {
     });
     // Octahedral coordinates of 16 bits: 0.004 degrees; a sum of length 0.01 turns by 2^-24 sqrt(3) / 0.01 rad = 0.0006 degrees.
     EXPECT_LE(worst * 180 / 3.14159265358979, 0.0046);
+}
+
+/// Between the four pixels around `at`, the picture repeated.
+glm::dvec4 textureAt(const Picture& picture, glm::dvec2 at) {
+    const glm::dvec2 p = (at - glm::floor(at)) * glm::dvec2(picture.width, picture.height) - 0.5, low = glm::floor(p), f = p - low;
+    const auto pixel = [&](double x, double y) {
+        return glm::dvec4(picture.at(unsigned(x + picture.width) % picture.width, unsigned(y + picture.height) % picture.height));
+    };
+    return (pixel(low.x, low.y) * (1 - f.x) + pixel(low.x + 1, low.y) * f.x) * (1 - f.y) +
+           (pixel(low.x, low.y + 1) * (1 - f.x) + pixel(low.x + 1, low.y + 1) * f.x) * f.y;
+}
+
+// Sums over the fragments in double precision.
+TEST_P(EveryVoxelizer, ColoursAndOrientationsAreMeansOverFragments) {
+    const Uint3 size(16, 20, 40);
+    const Grid grid = Grid::box(Float3(0), 1.0f, size);
+    Mesh mesh = test::soup(62, 150, size, 9);
+    test::Random random(63);
+    Picture picture(8, 5);
+    for (Float4& pixel : picture.pixels) pixel = {random.in(0, 1), random.in(0, 1), random.in(0, 1), random.in(0, 1)};
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        mesh.colours.push_back({random.in(0, 1), random.in(0, 1), random.in(0, 1), random.in(0, 1)});
+        mesh.texcoords.push_back({3 * random.in(0, 1) - 1, 3 * random.in(0, 1) - 1});
+    }
+    const Fragments fragments = fragmentsOf(mesh, grid, GetParam());
+    for (const bool textured : {false, true}) {
+        MeshView view = mesh;
+        if (textured) view.texture = &picture;
+        const Voxels got = voxelize(queue(), view, grid, method(Channel::colour | Channel::orientation));
+        ASSERT_EQ(got.occupied(), fragments.size());
+        double worstColour = 0, worstOrientation = 0;
+        got.forEach([&](Uint3 c, std::uint64_t index) {
+            glm::dvec4 colour(0);
+            std::array<double, 9> orientation{};
+            double count = 0;
+            for (const auto& [t, times] : fragments.at({c.x, c.y, c.z})) {
+                const Double3 a(mesh.positions[3 * t]), u = Double3(mesh.positions[3 * t + 1]) - a, v = Double3(mesh.positions[3 * t + 2]) - a;
+                const Double3 n = glm::cross(u, v), offset = Double3(c) + 0.5 - a;
+                Double3 weight(0, glm::dot(glm::cross(offset, v), n), glm::dot(glm::cross(u, offset), n));
+                weight /= glm::dot(n, n);
+                weight.x = 1 - weight.y - weight.z;
+                weight = glm::max(weight, 0.0);
+                weight /= weight.x + weight.y + weight.z;
+                glm::dvec4 one(0);
+                glm::dvec2 texcoord(0);
+                for (int k = 0; k < 3; ++k) {
+                    one += glm::dvec4(mesh.colours[3 * t + k]) * weight[k];
+                    texcoord += glm::dvec2(mesh.texcoords[3 * t + k]) * weight[k];
+                }
+                if (textured) one *= textureAt(picture, texcoord);
+                colour += one * double(times);
+                count += times;
+                const Double3 m = glm::normalize(n);
+                const double y1 = std::sqrt(3 / (4 * kPi)), y2 = std::sqrt(15 / (4 * kPi));
+                const std::array<double, 9> terms{std::sqrt(1 / (4 * kPi)), y1 * m.y, y1 * m.z, y1 * m.x, y2 * m.x * m.y, y2 * m.y * m.z,
+                                                  std::sqrt(5 / (16 * kPi)) * (3 * m.z * m.z - 1), y2 * m.x * m.z,
+                                                  y2 / 2 * (m.x * m.x - m.y * m.y)};
+                for (int k = 0; k < 9; ++k) orientation[k] += times * terms[k];
+            }
+            for (int k = 0; k < 4; ++k) worstColour = std::max(worstColour, std::abs(colour[k] / count - got.colours()[index][k]));
+            for (int k = 0; k < 9; ++k)
+                worstOrientation = std::max(worstOrientation, std::abs(orientation[k] / count - got.orientations()[index][k]));
+        });
+        // Half of 2^-16, and in single precision weights, products and sums of 2^-24 each; a texture coordinate up to 3 off by 2^-22 moves
+        // by 8 pixels as much.
+        EXPECT_LE(worstColour, 1.0 / 131070 + (textured ? 8e-6 : 1e-6));
+        // Half of 2^-15 times the largest factor, sqrt(15 / 4 pi); 2^-25 of fixed point and 2^-22 of single precision.
+        EXPECT_LE(worstOrientation, 1.0925 / 65534 + 1e-6);
+    }
+}
+
+// Opposite normals cancel in the mean and stay in the orientation; a triangle without area has none.
+TEST(Channels, OrientationsKeepWhatNormalsCancel) {
+    const Grid grid = Grid::box(Float3(0), 1.0f, Uint3(2, 1, 1));
+    const Mesh mesh = test::triangles({{0.1f, 0.1f, 0.5f}, {0.9f, 0.1f, 0.5f}, {0.1f, 0.9f, 0.5f},
+                                       {0.1f, 0.1f, 0.5f}, {0.1f, 0.9f, 0.5f}, {0.9f, 0.1f, 0.5f},
+                                       {1.2f, 0.2f, 0.2f}, {1.8f, 0.2f, 0.2f}, {1.8f, 0.2f, 0.2f}});
+    const Voxels got = voxelize(queue(), mesh, grid, Conservative{.channels = Channel::orientation});
+    ASSERT_EQ(got.occupied(), 2u);
+    EXPECT_NEAR(got.orientations()[0][2], 0, 2e-5);
+    EXPECT_NEAR(got.orientations()[0][6], std::sqrt(5 / (4 * kPi)), 2e-5);
+    EXPECT_EQ(got.orientations()[1], Harmonics{});
 }
 
 // A second call of the same size creates nothing and, for a mesh on the device, uploads nothing.

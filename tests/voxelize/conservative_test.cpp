@@ -112,6 +112,26 @@ void expectSingleBound(const Mesh& mesh, const Grid& grid, const std::string& na
     EXPECT_LE(farthest, 4 * std::sqrt(reach * 0x1p-23)) << name << " on " << grid.text() << ": " << diff.text();
 }
 
+// Fei, Wang & Chen 2012, section 6: what lies in one cell is one bit (one column is one run of bits), what straddles is tested; nothing is
+// missing. Triangles smaller than a cell, within one and over a face, an edge and a corner of it.
+TEST(Conservative, ExactOnStraddlers) {
+    const Uint3 size(24, 24, 70);
+    const Grid grid = Grid::box(Float3(0), 1.0f, size);
+    for (const unsigned across : {0u, 1u, 2u, 3u}) {
+        test::Random random(71 + across);
+        Mesh mesh;
+        for (int t = 0; t < 800; ++t) {
+            Float3 centre;
+            for (unsigned axis = 0; axis < 3; ++axis)
+                centre[axis] = std::floor(1 + (float(size[axis]) - 2) * random.in(0, 1)) + (axis < across ? 0.0f : 0.5f);
+            const auto near = [&] { return centre + random.point(Float3(-0.45f), Float3(0.45f)); };
+            const Float3 a = near(), b = near(), c = near();
+            test::addTriangle(mesh, a, b, c);
+        }
+        expectTruth(mesh, grid, "triangles over " + std::to_string(across) + " faces");
+    }
+}
+
 TEST(Conservative, SinglePrecisionMissesNothing) {
     const test::WithPrecision single(queue(), Precision::single);
     for (const test::Case& one : test::smallShapes())

@@ -171,13 +171,13 @@ std::array<double, 2> missingOf(const Mesh& mesh, const Grid& grid) {
     return shares;
 }
 
-// The header's shares. The generated shapes are coarser than scans and have parts thinner than a cell: up to 0.6 % and, for a
-// tree, 1.3 %.
+// The header's shares; more is missing of shapes whose sheets, hairs or twigs are about as thin as a cell.
 TEST(Points, MissLittleOfTheThinSurface) {
     for (const test::Case& one : test::smallShapes()) {
         const auto [once, twice] = missingOf(one.mesh, Grid::fit(one.mesh.bounds(), 64));
-        EXPECT_LE(once, one.name == "tree" ? 0.015 : 0.006) << one.name;
-        EXPECT_LE(twice, one.name == "tree" ? 0.006 : 0.001) << one.name;
+        const bool fine = one.name == "tree" || one.name == "gyroid" || one.name == "hairball";
+        EXPECT_LE(once, one.name == "tree" ? 0.013 : fine ? 0.003 : 0.001) << one.name;
+        EXPECT_LE(twice, one.name == "tree" ? 0.0045 : fine ? 0.0005 : 0) << one.name;
     }
 }
 
@@ -187,7 +187,7 @@ TEST(Points, MissLittleOfScans) {
         VITRAIL_NEEDS_DATA(file);
         const Mesh mesh = test::readPlain(file);
         const auto [once, twice] = missingOf(mesh, Grid::fit(mesh.bounds(), 128));
-        EXPECT_LE(once, 0.003) << name;
+        EXPECT_LE(once, 0.001) << name;
         EXPECT_LE(twice, 0.0002) << name;
     }
 }
@@ -225,6 +225,85 @@ TEST(Points, NoSafetyFactorIsGivenWhereTheLawIsNotKnownToHold) {
     EXPECT_TRUE(refused(std::nan(""), fine));
     EXPECT_TRUE(refused(0.1, coarse));
     EXPECT_FALSE(refused(0.1, fine));
+}
+
+/// PN triangles (Vlachos et al. 2001), each as `parts` x `parts` flat ones.
+Mesh patchesOf(const Mesh& mesh, int parts) {
+    Mesh fine;
+    for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
+        std::array<Double3, 3> p, n;
+        for (int k = 0; k < 3; ++k) {
+            p[k] = Double3(mesh.positions[mesh.indices[3 * t + k]]);
+            n[k] = glm::normalize(Double3(mesh.normals[mesh.indices[3 * t + k]]));
+        }
+        const auto edge = [&](int i, int j) { return (p[i] * 2.0 + p[j] - n[i] * glm::dot(p[j] - p[i], n[i])) / 3.0; };
+        const Double3 e = (edge(0, 1) + edge(1, 0) + edge(1, 2) + edge(2, 1) + edge(2, 0) + edge(0, 2)) / 6.0, v = (p[0] + p[1] + p[2]) / 3.0;
+        const auto at = [&](int i, int j) {
+            const double a = double(i) / parts, b = double(j) / parts, c = 1 - a - b;
+            return Float3(p[0] * (c * c * c) + p[1] * (a * a * a) + p[2] * (b * b * b) +
+                          3.0 * (edge(0, 1) * (c * c * a) + edge(1, 0) * (c * a * a) + edge(1, 2) * (a * a * b) + edge(2, 1) * (a * b * b) +
+                                 edge(2, 0) * (b * b * c) + edge(0, 2) * (b * c * c)) +
+                          (e * 1.5 - v * 0.5) * (6 * a * b * c));
+        };
+        for (int i = 0; i < parts; ++i)
+            for (int j = 0; i + j < parts; ++j) {
+                test::addTriangle(fine, at(i, j), at(i + 1, j), at(i, j + 1));
+                if (i + j + 1 < parts) test::addTriangle(fine, at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+            }
+    }
+    return fine;
+}
+
+// Facets of 0.37 cell on a radius of 24 cells, and of 0.2 cell on one of 7, lie within 0.37^2 / (8 * 24) = 0.0007 cell of the patches: about
+// six times that share of the voxels may differ by it.
+TEST(Points, OnPnTrianglesFollowTheCurvedSurface) {
+    const Mesh sphere = withSmoothNormals(test::closedSphere(Float3(0), 5, Float3(0.4f, 1, 2), 10, 5)),
+               torus = withSmoothNormals(test::closedTorus(Float3(0), 5, 2, Float3(0.3f, 1.1f, 2), 12, 6));
+    for (const Mesh* mesh : {&sphere, &torus}) {
+        const Mesh fine = patchesOf(*mesh, 40);
+        const Grid grid = Grid::fit(fine.bounds(), 48);
+        const reference::Truth touched = reference::conservative(fine, grid), thin = reference::thin(fine, grid);
+        for (const float gamma : {1.0f, 7.0f}) {
+            const Voxels got = voxelize(queue(), *mesh, grid,
+                                        Points{.safetyFactor = gamma, .channels = Channel::normal, .surface = Points::Surface::pnTriangles});
+            const VoxelDifference difference = compareVoxels(got.host(), touched.certain, touched.possible);
+            EXPECT_LE(difference.extraShare(), 0.0045) << gamma;
+            EXPECT_LE(difference.missingShare(), 0.21 / gamma) << gamma;
+            EXPECT_LE(compareVoxels(got.host(), thin.certain, thin.possible).missingShare(), 0.001) << gamma;
+            if (mesh != &sphere) continue;
+            double worst = 0;
+            got.forEach([&](Uint3 c, std::uint64_t index) {
+                const Double3 out = glm::normalize(grid.toWorld(Double3(c) + 0.5));
+                worst = std::max(worst, std::acos(std::min(1.0, glm::dot(out, Double3(got.normals()[index])))));
+            });
+            EXPECT_LE(worst * 180 / 3.14159265358979, 10) << gamma;
+        }
+    }
+}
+
+// Normals that stand on their triangles leave them flat.
+TEST(Points, OnFlatPnTrianglesAreThoseOfTheTriangles) {
+    const Uint3 size(40, 33, 70);
+    const Grid box = Grid::box(Float3(0), 1.0f, size), ortho = test::cameraGrids({Float3(0), Float3(size)}, size)[0];
+    for (const float reach : {0.7f, 20.0f, 150.0f})
+        for (const Grid& grid : {box, ortho}) {
+            Mesh mesh = test::soup(81, reach > 100 ? 4 : 100, size, reach);
+            mesh.normals.resize(mesh.positions.size());
+            for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
+                const std::uint32_t* corner = &mesh.indices[3 * t];
+                const Double3 a(mesh.positions[corner[0]]), b(mesh.positions[corner[1]]), c(mesh.positions[corner[2]]);
+                for (int k = 0; k < 3; ++k) mesh.normals[corner[k]] = Float3(glm::normalize(glm::cross(b - a, c - a)));
+            }
+            // The normals' rounding bends edges by 2^-25 of their length, which no more than a point in a hundred thousand notices.
+            const Voxels flat = voxelize(queue(), mesh, grid, Points{}),
+                         curved = voxelize(queue(), mesh, grid, Points{.surface = Points::Surface::pnTriangles});
+            EXPECT_LE(compareVoxels(curved.host(), flat.host()).missing + compareVoxels(curved.host(), flat.host()).extra, 1u) << reach;
+        }
+}
+
+TEST(Points, RefusePnTrianglesWithoutNormals) {
+    const Mesh sphere = test::closedSphere(Float3(0), 5, Float3(0), 8, 4);
+    EXPECT_THROW((void)voxelize(queue(), sphere, Grid::fit(sphere.bounds(), 8), Points{.surface = Points::Surface::pnTriangles}), Error);
 }
 
 TEST(Points, SkipWhatIsTooLargeAndCountIt) {

@@ -70,7 +70,7 @@ TEST(SameBits, WithoutAtomicsOf64Bits) {
     const test::WithVariable options("VITRAIL_BUILD_OPTIONS", "-DVITRAIL_NO_INT64_ATOMICS");
     Device device = Device::select();
     Queue other(device);
-    for (const char* name : {"conservative", "sampled", "sliced", "per_slice", "points"}) {
+    for (const char* name : {"conservative", "sampled", "sliced", "per_slice", "points", "placed_points"}) {
         const Voxels with = voxelize(queue(), mesh, grid, voxelizerByName(name, {}, all));
         const Voxels without = voxelize(other, mesh, grid, voxelizerByName(name, {}, all));
         EXPECT_EQ(without.normalBuffer().read(other), with.normalBuffer().read(queue())) << name;

@@ -8,6 +8,7 @@
 
 #include <vitrail/core/buffer.h>
 #include <vitrail/core/vector.h>
+#include <vitrail/scene/image.h>
 
 namespace vitrail {
 inline namespace v0 {
@@ -40,6 +41,8 @@ struct MeshView {
     std::span<const std::uint32_t> materials;  ///< one a triangle; empty: all 0
     Strided<Float3> normals;                 ///< shading normals, one a vertex, need not be unit; empty: face normals
     Strided<Float2> texcoords;               ///< one a vertex, or empty
+    Strided<Float4> colours;                 ///< linear RGBA, one a vertex, or empty: white
+    const Picture* texture = nullptr;        ///< multiplies the colours at texcoords, (0, 0) its upper left corner, repeated; or none
 
     std::size_t triangleCount() const { return (indices.empty() ? positions.count : indices.size()) / 3; }
     std::uint32_t index(std::size_t corner) const {
@@ -106,7 +109,8 @@ Mesh withSmoothNormals(const MeshView& mesh, float creaseDegrees = 180.0f);
 /// Triangles on the device, uploaded once and used by many calls.
 class DeviceMesh {
 public:
-    /// Copies the view's positions and indices, and materials, normals and texcoords where it has them. Checks as `check` does.
+    /// Copies the view's positions and indices, and materials, normals, texcoords, colours and texture where it has them. Checks as `check`
+    /// does.
     DeviceMesh(Queue& queue, const MeshView& mesh);
     /// On buffers that are already there (interop): packed float3 positions, u32 indices (three a triangle), u32 materials or
     /// none, packed float3 normals or none. Bounds must be given, since the device is not asked. Triangles with an index past the
@@ -140,12 +144,18 @@ public:
     const Buffer<std::uint32_t>& indices() const { return indices_; }
     const Buffer<std::uint32_t>& materials() const { return materials_; }  ///< empty: all 0
     const Buffer<float>& normals() const { return normals_; }              ///< empty: face normals
+    const Buffer<float>& texcoords() const { return texcoords_; }          ///< packed float2; empty: none
+    const Buffer<float>& colours() const { return colours_; }              ///< packed float4; empty: white
+    const Buffer<float>& texture() const { return texture_; }              ///< packed float4, row after row; empty: none
+    std::uint32_t textureWidth() const { return textureWidth_; }
+    std::uint32_t textureHeight() const { return textureHeight_; }
     std::uint64_t bytes() const;
 
 private:
     Buffer<float> positions_;
     Buffer<std::uint32_t> indices_, materials_;
-    Buffer<float> normals_;
+    Buffer<float> normals_, texcoords_, colours_, texture_;
+    std::uint32_t textureWidth_ = 0, textureHeight_ = 0;
     Bounds bounds_;
 };
 

@@ -9,9 +9,17 @@
 //             bits (no overflow below 2^39 triangles), stored as two signed 16-bit octahedral coordinates; error below 0.004 degrees;
 //             0 (the +z normal) where the sum vanishes
 //   material  u32, the lowest material id
+//   colour    mean of linear RGBA, alpha like the others: of a triangle at the point of its plane next to the voxel's centre (in grid
+//             coordinates), brought into the triangle; vertex colours times texture, each fragment brought to 0..1; summed likewise
+//             and stored as four unsigned 16-bit parts of 1 (error below 2^-16 and single precision's interpolation)
+//   orientation  mean over the unit normals n of the real spherical harmonics of order 2 (Makadia 2006): the EGI that shows how normals
+//             spread and not only their mean. Y00 is the same for every n and is not stored; stored are x, y, z, xy, yz, zz, xz, xx - yy of
+//             n, summed likewise, as eight signed 16-bit parts of 1: error of a coefficient below 2^-16 times its factor, at most 1.1, and
+//             2^-22 of the value. Triangles without area count for nothing; 0 where there are no others
 // A voxelizer that says so in its header counts points of triangles instead of triangles.
 // Occupancy mip: one byte a tile, bit b set if slices 8b to 8b+7 of the tile's 8 x 8 columns hold a voxel: an 8^3 mip.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -26,13 +34,17 @@
 namespace vitrail {
 inline namespace v0 {
 
-enum class Channel : std::uint32_t { none = 0, count = 1, normal = 2, material = 4 };
+enum class Channel : std::uint32_t { none = 0, count = 1, normal = 2, material = 4, colour = 8, orientation = 16 };
 constexpr Channel operator|(Channel a, Channel b) {
     return static_cast<Channel>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
 }
 constexpr bool has(Channel set, Channel one) {
     return (static_cast<std::uint32_t>(set) & static_cast<std::uint32_t>(one)) != 0;
 }
+
+/// Coefficients of the real orthonormal spherical harmonics Y00; Y1-1, Y10, Y11; Y2-2, Y2-1, Y20, Y21, Y22 (without the phase of Condon and
+/// Shortley): of y, z, x; xy, yz, 3zz - 1, xz, xx - yy.
+using Harmonics = std::array<float, 9>;
 
 /// Occupancy on the host, in the layout of the device: what metrics judge and files hold.
 struct VoxelBits {
@@ -86,6 +98,8 @@ public:
     const Buffer<std::uint32_t>& countBuffer() const;     ///< Error (badOption) if the channel was not asked for; likewise below
     const Buffer<std::uint32_t>& normalBuffer() const;
     const Buffer<std::uint32_t>& materialBuffer() const;
+    const Buffer<std::uint32_t>& colourBuffer() const;       ///< two a voxel: red and green, blue and alpha, the first in the low half
+    const Buffer<std::uint32_t>& orientationBuffer() const;  ///< four a voxel, two parts each, the first in the low half; the very first -32768: none
 
     // On the host.
     std::uint64_t occupied() const;
@@ -93,6 +107,8 @@ public:
     const std::vector<std::uint32_t>& counts() const;     ///< by index of the occupied voxel
     const std::vector<std::uint32_t>& materials() const;
     const std::vector<Float3>& normals() const;           ///< unit
+    const std::vector<Float4>& colours() const;           ///< linear RGBA
+    const std::vector<Harmonics>& orientations() const;
 
     /// Calls f(Uint3 cell, std::uint64_t index) for every occupied voxel, in index order.
     template <class F>

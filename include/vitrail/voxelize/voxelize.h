@@ -8,6 +8,7 @@
 #include <vitrail/methods.h>
 #include <vitrail/voxelize/conservative.h>
 #include <vitrail/voxelize/per_slice.h>
+#include <vitrail/voxelize/placed_points.h>
 #include <vitrail/voxelize/points.h>
 #include <vitrail/voxelize/sampled.h>
 #include <vitrail/voxelize/sliced.h>
@@ -19,7 +20,7 @@
 namespace vitrail {
 inline namespace v0 {
 
-using Voxelizer = std::variant<Conservative, Thin, Sampled, Sliced, PerSlice, Points, Solid, SolidWinding, SolidSlicemap>;
+using Voxelizer = std::variant<Conservative, Thin, Sampled, Sliced, PerSlice, Points, PlacedPoints, Solid, SolidWinding, SolidSlicemap>;
 
 /// The voxelizer called `name` with options "safetyFactor=2"; others keep their defaults.
 /// Throws Error (badOption) that lists what there is.
