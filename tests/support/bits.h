@@ -21,8 +21,12 @@ inline void expectSameChannels(Queue& queue, const Voxels& got, const Voxels& ex
     EXPECT_EQ(got.materials(), expected.materials());
     EXPECT_EQ(got.normalBuffer().read(queue), expected.normalBuffer().read(queue));
     ASSERT_EQ(got.channels(), expected.channels());
-    if (has(got.channels(), Channel::colour)) EXPECT_EQ(got.colourBuffer().read(queue), expected.colourBuffer().read(queue));
-    if (has(got.channels(), Channel::orientation)) EXPECT_EQ(got.orientationBuffer().read(queue), expected.orientationBuffer().read(queue));
+    if (has(got.channels(), Channel::colour)) {
+        EXPECT_EQ(got.colourBuffer().read(queue), expected.colourBuffer().read(queue));
+    }
+    if (has(got.channels(), Channel::orientation)) {
+        EXPECT_EQ(got.orientationBuffer().read(queue), expected.orientationBuffer().read(queue));
+    }
     EXPECT_EQ(got.report().outsideTriangles, expected.report().outsideTriangles);
 }
 
