@@ -107,7 +107,7 @@ TEST_F(Program, BadArgumentsAreTwo) {
     for (const std::string arguments :
          {"voxelise mesh.ply", "voxelize", "voxelize mesh.ply --padding -1", "voxelize mesh.ply -r 0", "voxelize mesh.ply -r 64 --voxel-size 0.1",
           "voxelize mesh.ply --bounds 0,0,0,1,1", "voxelize mesh.ply --bounds 1,0,0,0,1,1", "voxelize mesh.ply --up x",
-          "voxelize mesh.ply --channels colour", "voxelize mesh.ply --method points --safetyFactor 1000",
+          "voxelize mesh.ply --channels scent", "voxelize mesh.ply --method points --safetyFactor 1000",
           "voxelize mesh.ply --method conservative --safetyFactor 2", "compare mesh.ply --methods conservative --safetyFactor 2",
           "compare mesh.ply --expect missing", "compare mesh.ply --expect missing!=0", "compare mesh.ply --expect missing==few",
           "compare mesh.ply --expect nothing==0", "compare mesh.ply --expect watertight==1", "shape", "shape torus",

@@ -34,8 +34,10 @@ int main() {
             }
             for (const Method& row : methods()) {
                 if (!isVoxelizer(row)) continue;
+                // Not colour: with it Oclgrind 21.10 aborts in its own heap when it ends, after all cases; on a device, and with the host's heap
+                // checked, nothing is found.
                 const Voxelizer method = voxelizerByName(
-                    row.name, {}, row.channels ? Channel::count | Channel::normal | Channel::material | Channel::colour | Channel::orientation : Channel::none);
+                    row.name, {}, row.channels ? Channel::count | Channel::normal | Channel::material | Channel::orientation : Channel::none);
                 std::vector<Grid> grids{Grid::box(Float3(0), 1.0f, size)};
                 if (row.cameraGrids) grids.push_back(test::cameraGrids({Float3(0), Float3(size)}, Uint3(7, 6, 5))[2]);
                 for (const Grid& grid : grids) {
