@@ -22,7 +22,7 @@
 #include <vitrail/scene/shapes.h>
 #include <vitrail/voxelize/conservative.h>
 
-#include "context.h"
+#include "inputs.h"
 
 namespace {
 
@@ -107,11 +107,8 @@ struct Input {
 std::vector<Input> inputs() {
     std::vector<Input> all;
     all.push_back({"torus", "displace", [](Queue& queue) { return std::make_unique<Waves>(queue, makeShape("torus")); }});
-    const char* folder = std::getenv("VITRAIL_DATA");
-    if (folder == nullptr) return all;
     const auto add = [&](const char* name, const char* how, auto make) {
-        const auto path = std::filesystem::path(folder) / name;
-        if (std::filesystem::exists(path)) all.push_back({path.stem().string(), how, [=](Queue& queue) { return make(queue, path); }});
+        if (const auto found = dataMesh(name)) all.push_back({found->stem().string(), how, [make, path = *found](Queue& queue) { return make(queue, path); }});
     };
     for (const char* name : {"gltf/CesiumMan.glb", "gltf/Fox.glb"})
         add(name, "skin", [](Queue& queue, const auto& path) { return std::make_unique<Figure>(queue, path); });
@@ -167,33 +164,19 @@ void bench(benchmark::State& state, Queue& queue, Moving& moving, std::uint32_t 
 
 int main(int argc, char** argv) {
     // In turns, medians of five, unless told otherwise.
-    if (!initialize(argc, argv, {"--benchmark_repetitions=5", "--benchmark_enable_random_interleaving=true",
-                                 "--benchmark_report_aggregates_only=true", "--benchmark_min_time=0.1"}))
-        return 2;
-    try {
-        Device device = Device::select();
-        Queue queue(device);
-        const std::vector<Input> all = inputs();
-        std::map<std::string, std::unique_ptr<Moving>> made;  // when first needed
-        for (const Input& input : all)
-            for (const std::uint32_t resolution : kResolutions) {
-                const std::string name = input.name + "/" + std::to_string(resolution) + "/" + input.how;
-                benchmark::RegisterBenchmark(name.c_str(), [&, resolution](benchmark::State& state) {
-                    try {
-                        std::unique_ptr<Moving>& moving = made[input.name];
-                        if (!moving) moving = input.make(queue);
-                        bench(state, queue, *moving, resolution);
-                    } catch (const std::exception& error) {
-                        state.SkipWithError(error.what());
-                    }
-                })->UseManualTime()->Unit(benchmark::kMillisecond);
-            }
-        addMachineContext(device.info());
-        benchmark::RunSpecifiedBenchmarks();
-        benchmark::Shutdown();
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "%s\n", error.what());
-        return 1;
-    }
-    return 0;
+    return benchMain(argc, argv,
+                     {"--benchmark_repetitions=5", "--benchmark_enable_random_interleaving=true", "--benchmark_report_aggregates_only=true",
+                      "--benchmark_min_time=0.1"},
+                     [](Queue& queue) {
+                         static const std::vector<Input> all = inputs();
+                         static std::map<std::string, std::unique_ptr<Moving>> made;  // when first needed
+                         for (const Input& input : all)
+                             for (const std::uint32_t resolution : kResolutions)
+                                 addBenchmark(input.name + "/" + std::to_string(resolution) + "/" + input.how,
+                                              [&queue, &input, resolution](benchmark::State& state) {
+                                                  std::unique_ptr<Moving>& moving = made[input.name];
+                                                  if (!moving) moving = input.make(queue);
+                                                  bench(state, queue, *moving, resolution);
+                                              });
+                     });
 }

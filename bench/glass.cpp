@@ -21,7 +21,7 @@
 #include <vitrail/reference/glass.h>
 #include <vitrail/scene/shapes.h>
 
-#include "context.h"
+#include "inputs.h"
 
 namespace {
 
@@ -46,11 +46,8 @@ Input inputOf(const std::string& name, Mesh mesh) {
 std::vector<Input> inputs() {
     std::vector<Input> all;
     for (const char* shape : {"torus", "box", "knot"}) all.push_back(inputOf(shape, makeShape(shape)));
-    const char* folder = std::getenv("VITRAIL_DATA");
-    if (folder == nullptr) return all;
     for (const char* file : {"teapot.obj", "hand_closed.obj", "fertility.off", "bunny_hr.obj", "horse.ply", "dragon_vrip_res2.ply", "scorpion.obj", "igea.ply"}) {
-        const auto path = std::filesystem::path(folder) / "meshes" / file;
-        if (std::filesystem::exists(path)) all.push_back(inputOf(path.stem().string(), load(path)));
+        if (const auto path = dataMesh(std::string("meshes/") + file)) all.push_back(inputOf(path->stem().string(), load(*path)));
     }
     return all;
 }
@@ -118,12 +115,9 @@ void bench(benchmark::State& state, Queue& queue, const Scene& scene, const Trut
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (!initialize(argc, argv, {"--benchmark_repetitions=3", "--benchmark_report_aggregates_only=true", "--benchmark_min_time=0.1"})) return 2;
-    try {
-        Device device = Device::select();
-        Queue queue(device);
-        const std::vector<Input> meshes = inputs();
-        std::map<std::string, Truth> truths;
+    return benchMain(argc, argv, {"--benchmark_repetitions=3", "--benchmark_report_aggregates_only=true", "--benchmark_min_time=0.1"}, [](Queue& queue) {
+        static const std::vector<Input> meshes = inputs();
+        static std::map<std::string, Truth> truths;
         for (const Input& input : meshes)
             for (const char* index : {"1.14", "1.3", "1.5"})
                 for (const char* resolution : {"128", "256", "512"})
@@ -132,22 +126,11 @@ int main(int argc, char** argv) {
                         if (row.family != Family::glass || (!plain && std::string_view(resolution) != "256")) continue;
                         const std::string name = input.name + "/" + resolution + "/" + std::string(row.name) + (plain ? "" : std::string("/ior=") + index);
                         const std::vector<std::string> options{std::string("resolution=") + resolution};
-                        benchmark::RegisterBenchmark(name.c_str(), [&queue, &truths, &input, index, method = glassByName(row.name, options)](benchmark::State& state) {
-                            try {
-                                Scene scene = input.scene;
-                                scene.materials[0].indexOfRefraction = std::stof(index);
-                                bench(state, queue, scene, truths.try_emplace(input.name + index, scene).first->second, method);
-                            } catch (const std::exception& error) {
-                                state.SkipWithError(error.what());
-                            }
-                        })->UseManualTime()->Unit(benchmark::kMillisecond);
+                        addBenchmark(name, [&queue, &input, index, method = glassByName(row.name, options)](benchmark::State& state) {
+                            Scene scene = input.scene;
+                            scene.materials[0].indexOfRefraction = std::stof(index);
+                            bench(state, queue, scene, truths.try_emplace(input.name + index, scene).first->second, method);
+                        });
                     }
-        addMachineContext(device.info());
-        benchmark::RunSpecifiedBenchmarks();
-        benchmark::Shutdown();
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "%s\n", error.what());
-        return 1;
-    }
-    return 0;
+    });
 }

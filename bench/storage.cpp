@@ -14,7 +14,7 @@
 #include <vitrail/scene/shapes.h>
 #include <vitrail/voxelize/conservative.h>
 
-#include "context.h"
+#include "inputs.h"
 
 namespace {
 
@@ -52,36 +52,17 @@ void bench(benchmark::State& state, Queue& queue, const DeviceMesh& mesh, const 
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (!initialize(argc, argv, {"--benchmark_repetitions=5", "--benchmark_report_aggregates_only=true", "--benchmark_min_time=0.05"})) return 2;
-    try {
-        Device device = Device::select();
-        Queue queue(device);
-        std::vector<std::pair<std::string, DeviceMesh>> meshes;
+    return benchMain(argc, argv, {"--benchmark_repetitions=5", "--benchmark_report_aggregates_only=true", "--benchmark_min_time=0.05"}, [](Queue& queue) {
+        static std::vector<std::pair<std::string, DeviceMesh>> meshes;
         for (const char* shape : {"torus", "tree"}) meshes.emplace_back(shape, DeviceMesh(queue, makeShape(shape)));
-        if (const char* folder = std::getenv("VITRAIL_DATA")) {
-            const auto path = std::filesystem::path(folder) / "meshes/dragon_vrip_res2.ply";
-            if (std::filesystem::exists(path)) meshes.emplace_back(path.stem().string(), DeviceMesh(queue, load(path)));
-        }
+        if (const auto path = dataMesh("meshes/dragon_vrip_res2.ply")) meshes.emplace_back(path->stem().string(), DeviceMesh(queue, load(*path)));
         for (const auto& [name, mesh] : meshes)
             for (const std::uint32_t resolution : kResolutions)
                 for (const Storage storage : {Storage::dense, Storage::bricks}) {
                     const Grid grid = Grid::fit(mesh.bounds(), resolution);
                     if (storage == Storage::dense && grid.wordCount() * 4 > kDenseMost) continue;
                     const std::string title = name + "/" + std::to_string(resolution) + (storage == Storage::dense ? "/dense" : "/bricks");
-                    benchmark::RegisterBenchmark(title.c_str(), [&queue, &mesh = mesh, grid, storage](benchmark::State& state) {
-                        try {
-                            bench(state, queue, mesh, grid, storage);
-                        } catch (const std::exception& error) {
-                            state.SkipWithError(error.what());
-                        }
-                    })->UseManualTime()->Unit(benchmark::kMillisecond);
+                    addBenchmark(title, [&queue, &mesh = mesh, grid, storage](benchmark::State& state) { bench(state, queue, mesh, grid, storage); });
                 }
-        addMachineContext(device.info());
-        benchmark::RunSpecifiedBenchmarks();
-        benchmark::Shutdown();
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "%s\n", error.what());
-        return 1;
-    }
-    return 0;
+    });
 }
