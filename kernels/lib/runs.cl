@@ -1,5 +1,5 @@
 // lib/runs.cl: fragments that mark a run of slices: those of their footprint, in slices that are uniform or each column's own. The arithmetic
-// is that of reference::sampled operation by operation, which host/reference/truth.cpp states as a contract.
+// is that of reference::sampled operation by operation, which host/reference/columns.cpp states as a contract.
 #ifndef VITRAIL_LIB_RUNS
 #define VITRAIL_LIB_RUNS
 #include "lib/samples.cl"

@@ -1,5 +1,5 @@
 // lib/samples.cl: the columns whose centre a triangle covers and the depth of each, for sampled, sliced, per_slice and solid. The
-// arithmetic is that of reference::sampled operation by operation, which host/reference/truth.cpp states as a contract.
+// arithmetic is that of reference::sampled operation by operation, which host/reference/columns.cpp states as a contract.
 //
 // Within a row, "edge e crosses the line of column i" is a comparison of two products that rounding leaves monotonic in i, as
 // every step towards them is (an addition or a product with a factor of known sign). So each of the two edges that cross a row

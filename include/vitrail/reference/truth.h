@@ -34,7 +34,7 @@ struct Ranges {
 };
 
 /// A plain scan of column centres: the oracle of Sampled, equal to it bit for bit. Any grid; with `ranges` in slices of each column's own.
-/// Its arithmetic, operation by operation, is stated in host/reference/truth.cpp.
+/// Its arithmetic, operation by operation, is stated in host/reference/columns.cpp.
 VoxelBits sampled(const MeshView& mesh, const Grid& grid, bool span = false, const Ranges* ranges = nullptr);
 /// The depths of that scan, column by column: the oracle of depthRange.
 Ranges depthRange(const MeshView& mesh, const Grid& grid, bool span = false);
