@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
 
 #include <vitrail/layout/shading.h>
 #include <vitrail/methods.h>
 #include <vitrail/raster/gbuffer.h>
 #include <vitrail/voxelize/lists.h>
+#include <vitrail/voxelize/solid.h>
 #include <vitrail/voxelize/surface.h>
 
 #include "light/image_state.h"
@@ -70,7 +72,8 @@ struct Volume {
     Grid grid;
     DeviceMesh mesh;
     Voxels voxels;
-    Buffer<vitrail_SurfaceVoxel> surface;        // of Planes
+    Buffer<vitrail_SurfaceVoxel> surface, planes;  // of Planes
+    std::optional<Voxels> solid;
     Buffer<std::uint32_t> triangles, ends;       // of Exact
     GBuffer gbuffer;
     Buffer<vitrail_MaterialDesc> materials;
@@ -98,11 +101,13 @@ Volume volumeOf(detail::Call& call, const Scene& scene, const Camera& camera, co
     const auto bound = static_cast<std::int32_t>(4 * (size.x + size.y + size.z));
     if (std::holds_alternative<Exact>(method)) {
         VoxelLists lists = voxelizeLists(queue, mesh, grid);
-        return {grid, std::move(mesh), std::move(lists.voxels), {}, std::move(lists.triangles), std::move(lists.ends), std::move(gbuffer),
+        return {grid, std::move(mesh), std::move(lists.voxels), {}, {}, {}, std::move(lists.triangles), std::move(lists.ends), std::move(gbuffer),
                 std::move(materials), bound};
     }
     SurfaceVoxels surface = voxelizeSurface(queue, mesh, grid);
-    return {grid, std::move(mesh), std::move(surface.voxels), std::move(surface.surface), {}, {}, std::move(gbuffer), std::move(materials), bound};
+    Voxels solid = voxelize(queue, mesh, grid, Solid{});
+    return {grid, std::move(mesh), std::move(surface.voxels), std::move(surface.surface), std::move(surface.planes), std::move(solid), {}, {},
+            std::move(gbuffer), std::move(materials), bound};
 }
 
 void check(const Scene& scene, const GlassMethod& method) {
@@ -120,6 +125,8 @@ void launchRays(detail::Call& call, const char* kernel, const Volume& volume, st
                 const std::tuple<Tail...>& tail) {
     constexpr std::uint64_t kBand = 1u << 18;
     const Voxels& voxels = volume.voxels;
+    const Buffer<std::uint32_t> none;
+    const Buffer<std::uint32_t>&solidBits = volume.solid ? volume.solid->bits() : none, &solidBricks = volume.solid ? volume.solid->bricks() : none;
     for (std::uint64_t first = 0; first < samples; first += kBand) {
         call.step("rays", 0.5 + 0.5 * static_cast<double>(first) / static_cast<double>(samples));
         const std::uint64_t count = std::min(kBand, samples - first);
@@ -130,6 +137,7 @@ void launchRays(detail::Call& call, const char* kernel, const Volume& volume, st
                         call.launchRange(detail::Program{"light", ""}, kernel, count, volume.grid.desc(), volume.gbuffer.camera, before...,
                                          volume.mesh.positions(), volume.mesh.indices(), volume.mesh.normals(), volume.mesh.materials(),
                                          volume.gbuffer.triangle, voxels.bits(), voxels.bricks(), voxels.rank(), voxels.mip(), volume.surface,
+                                         volume.planes, solidBits, solidBricks,
                                          voxels.materialBuffer(), volume.materials, voxels.countBuffer(), volume.triangles, volume.ends, after...,
                                          first);
                     },

@@ -1,6 +1,8 @@
 // light/glass.cl: rays through voxels that know their surface, or the triangles in them (vitrail/light/glass.h). Of planes, one state, inside
-// or outside, decides which count: outside only planes that face the ray are entered, inside only planes that face away are left, so that neighbouring voxels that
-// hold the same surface never count it twice and a plane may be met a little outside its own cell.
+// or outside, decides which count: outside only planes that face the ray are entered, inside only planes that face away are left, so that
+// neighbouring voxels that hold the same surface never count it twice. A plane counts where the ray meets it in its own cell. One met a
+// little outside counts when the ray came through between cells: when a cell without surface behind is known to be on the other side, or a
+// plane of the other kind comes first.
 #include "layout/grid.h"
 #include "layout/ray_end.h"
 #include "light/surroundings.cl"
@@ -12,6 +14,8 @@
 #pragma OPENCL FP_CONTRACT OFF
 
 #define REACH 0.5f         // cells past its own by which a plane still counts
+#define OWN 1e-3f          // by which it counts as in its own
+#define NEAR_EDGE 0.01f    // cells past another plane of its voxel by which a plane still counts
 
 #define STATUS_LOST 0      // left the grid inside glass
 #define STATUS_BOUNDED 1   // met the bound of events or steps
@@ -24,6 +28,9 @@ typedef struct {
     global const uint* rank;
     global const uchar* mip;
     global const vitrail_SurfaceVoxel* surface;  // null: lists of triangles
+    global const vitrail_SurfaceVoxel* planes;
+    global const uint* solid;  // bits of cells whose centre is inside
+    global const uint2* solidBricks;
     global const uint* voxelMaterial;
     global const vitrail_MaterialDesc* materials;
     int bound;  // steps of one march
@@ -157,41 +164,113 @@ static inline bool glass_next_triangle(const Volume* volume, float3 origin, floa
     return true;
 }
 
+// A plane of a voxel as a ray sees it.
+typedef struct {
+    vitrail_SurfaceVoxel record;
+    float3 normal, flat, centroid;
+    float slope, t;
+} Facet;
+
+static inline void glass_facet(vitrail_SurfaceVoxel record, float3 corner, float3 origin, float3 direction, Facet* f) {
+    f->record = record;
+    f->normal = frame_unpack_normal(record.normal);
+    f->flat = surface_flat(record, f->normal);
+    f->centroid = surface_centroid(record) + corner;
+    f->slope = dot(direction, f->flat);
+    f->t = fabs(f->slope) > 1e-6f ? dot(f->centroid - origin, f->flat) / f->slope : -1.0f;
+}
+
+// Whether the surface is there: planes of a voxel end where they cross, at what the solid behind both or either has no part in.
+static inline bool glass_counts(const Facet facets[VITRAIL_SURFACE_PLANES], int count, int which, uint relations, float3 origin, float3 direction) {
+    const float3 p = origin + direction * facets[which].t;
+    for (int k = 0; k < count; ++k) {
+        if (k == which) continue;
+        const uint relation = (relations >> (which + k - 1) * 2) & 3u;
+        const float ahead = dot(p - facets[k].centroid, facets[k].flat);
+        if ((relation == VITRAIL_SURFACE_CONVEX && ahead > NEAR_EDGE) || (relation == VITRAIL_SURFACE_CONCAVE && ahead < -NEAR_EDGE)) return false;
+    }
+    return true;
+}
+
+static inline void glass_met(const Facet* f, float3 origin, float3 direction, uint material, Crossing* hit) {
+    hit->t = f->t;
+    hit->position = origin + direction * f->t;
+    hit->normal = surface_normal_at(f->record, f->normal, hit->position - f->centroid);
+    hit->flat = f->flat;
+    hit->material = material;
+    hit->inside = f->slope > 0.0f;
+}
+
+// Whether a cell without surface is inside.
+static inline bool glass_solid(const Volume* volume, const Dda* dda) {
+    const size_t word = bits_word(volume->grid, volume->solidBricks, (uint)dda->x, (uint)dda->y, (uint)dda->z);
+    return (volume->solid[word] >> (dda->z & 31)) & 1u;
+}
+
 // The next boundary along a ray that is `inside` glass or not. Opaque voxels count from outside and from inside. False: none.
 static inline bool glass_next_plane(const Volume* volume, float3 origin, float3 direction, bool inside, float tLeast, int* steps, Crossing* hit) {
     Dda dda;
     dda.steps = *steps;
-    bool found = false;
     hit->inside = inside;
     hit->triangle = NO_TRIANGLE;
+    bool found = false, away = false;  // away: past a cell without surface
+    float aside = 2.0f;                // how far outside its cell the candidate in `hit` was met; 2: there is none
     if (dda_start(&dda, volume->grid, origin, direction, fmax(tLeast - REACH, 0.0f))) {
-        float best = 1e30f;
-        size_t word;
-        while (dda_find(&dda, volume->grid, volume->words, volume->bricks, volume->mip, volume->bound, &word)) {
-            if (found && dda.enter > best) break;
+        for (;;) {
+            if (aside < 2.0f && dda.enter > hit->t && dda.steps < volume->bound) {
+                const size_t at = bits_word(volume->grid, volume->bricks, (uint)dda.x, (uint)dda.y, (uint)dda.z);
+                if (!((volume->words[at] >> (dda.z & 31)) & 1u)) {
+                    if (glass_solid(volume, &dda) != inside) {
+                        found = true;
+                        break;
+                    }
+                    aside = 2.0f;
+                }
+            }
+            const int before = dda.steps;
+            size_t word;
+            if (!dda_find(&dda, volume->grid, volume->words, volume->bricks, volume->mip, volume->bound, &word)) break;
+            away = away || dda.steps != before;
             const uint index = bits_rank(volume->words, volume->rank, word, (uint)dda.z & 31u);
-            const vitrail_SurfaceVoxel s = volume->surface[index];
-            if (s.centroid & VITRAIL_SURFACE_PRESENT) {
-                const float3 normal = frame_unpack_normal(s.normal);
-                const float3 centroid = surface_centroid(s) + (float3)((float)dda.x, (float)dda.y, (float)dda.z);
+            const vitrail_SurfaceVoxel first = volume->surface[index];
+            if (first.centroid & VITRAIL_SURFACE_PRESENT) {
+                const float3 corner = (float3)((float)dda.x, (float)dda.y, (float)dda.z);
+                const bool split = (first.centroid & VITRAIL_SURFACE_SPLIT) != 0u;
+                const int count = split ? (int)(first.centroid & 3u) : 1;
+                Facet facets[VITRAIL_SURFACE_PLANES];
+                for (int k = 0; k < count; ++k)
+                    glass_facet(split ? volume->planes[first.normal + (uint)k] : first, corner, origin, direction, &facets[k]);
                 const uint material = volume->voxelMaterial[index];
                 const bool opaque = volume->materials[material].colour.w <= 0.5f;
-                const float slope = dot(direction, normal);
-                if (opaque || (inside ? slope > 0.0f : slope < 0.0f)) {
-                    const float t = fabs(slope) > 1e-6f ? dot(centroid - origin, normal) / slope : -1.0f;
-                    if (t > tLeast && t >= dda.enter - REACH && t <= dda.leave + REACH && t < best) {
-                        best = t;
-                        found = true;
-                        hit->t = t;
-                        hit->position = origin + direction * t;
-                        hit->normal = surface_normal_at(s, normal, hit->position - centroid);
-                        hit->flat = normal;
-                        hit->material = material;
+                int best = -1, other = -1;
+                for (int k = 0; k < count; ++k) {
+                    const float t = facets[k].t, off = fmax(fmax(dda.enter - t, t - dda.leave), 0.0f);
+                    if (!(t > tLeast) || off > REACH || !glass_counts(facets, count, k, first.slope0, origin, direction)) continue;
+                    if (opaque || (facets[k].slope > 0.0f) == inside) {
+                        if (off <= OWN) {
+                            if (best < 0 || t < facets[best].t) best = k;
+                        } else if (off < aside) {
+                            aside = off;
+                            glass_met(&facets[k], origin, direction, material, hit);
+                        }
+                    } else if (away && off <= OWN && (other < 0 || t < facets[other].t)) {
+                        other = k;
                     }
+                }
+                if (other >= 0 && (best < 0 || facets[other].t < facets[best].t)) {
+                    if (!(aside < 2.0f && hit->t < facets[other].t)) glass_met(&facets[other], origin, direction, material, hit);
+                    found = true;
+                    break;
+                }
+                if (best >= 0) {
+                    glass_met(&facets[best], origin, direction, material, hit);
+                    found = true;
+                    break;
                 }
             }
             if (!dda_step(&dda, volume->grid)) break;
         }
+        if (!found && aside < 2.0f && inside && dda.steps < volume->bound) found = true;
     }
     *steps = dda.steps;
     return found;
@@ -364,11 +443,13 @@ static void glass_trace(const Volume* volume, float3 position, float3 normal, fl
 kernel void glass_shade(const vitrail_GridDesc grid, const vitrail_CameraDesc camera, const vitrail_LightDesc light,
                         global const float* positions, global const uint* indices, global const float* normals,
                         global const uint* triangleMaterial, global const uint* nearest, global const uint* words, global const uint2* bricks,
-                        global const uint* rank, global const uchar* mip, global const vitrail_SurfaceVoxel* surface, global const uint* voxelMaterial,
+                        global const uint* rank, global const uchar* mip, global const vitrail_SurfaceVoxel* surface,
+                        global const vitrail_SurfaceVoxel* planes, global const uint* solid, global const uint2* solidBricks,
+                        global const uint* voxelMaterial,
                         global const vitrail_MaterialDesc* materials,
                          global const uint* counts, global const uint* list, global const uint* end, global const float4* map, int bound, global uint* status,
                         global float4* samples, ulong first, ulong count, uint perItem) {
-    const Volume volume = {&grid, words, bricks, rank, mip, surface, voxelMaterial, materials, bound, counts, list, end, positions, indices, normals,
+    const Volume volume = {&grid, words, bricks, rank, mip, surface, planes, solid, solidBricks, voxelMaterial, materials, bound, counts, list, end, positions, indices, normals,
                            triangleMaterial};
     const float width = 2.0f * camera.up.w / (float)camera.height;  // of a pixel at distance 1; the ground's tiles are filtered by it
     FOR_RANGE(i, count, perItem) {
@@ -399,10 +480,11 @@ kernel void glass_shade(const vitrail_GridDesc grid, const vitrail_CameraDesc ca
 kernel void glass_ends(const vitrail_GridDesc grid, const vitrail_CameraDesc camera, global const float* positions, global const uint* indices,
                        global const float* normals, global const uint* triangleMaterial, global const uint* nearest, global const uint* words,
                        global const uint2* bricks, global const uint* rank, global const uchar* mip, global const vitrail_SurfaceVoxel* surface,
+                        global const vitrail_SurfaceVoxel* planes, global const uint* solid, global const uint2* solidBricks,
                        global const uint* voxelMaterial, global const vitrail_MaterialDesc* materials,
                          global const uint* counts, global const uint* list, global const uint* end, int bound,
                        global vitrail_RayEnd* rays, ulong first, ulong count, uint perItem) {
-    const Volume volume = {&grid, words, bricks, rank, mip, surface, voxelMaterial, materials, bound, counts, list, end, positions, indices, normals,
+    const Volume volume = {&grid, words, bricks, rank, mip, surface, planes, solid, solidBricks, voxelMaterial, materials, bound, counts, list, end, positions, indices, normals,
                            triangleMaterial};
     FOR_RANGE(i, count, perItem) {
         const size_t pixel = first + i;
@@ -425,10 +507,12 @@ kernel void glass_ends(const vitrail_GridDesc grid, const vitrail_CameraDesc cam
 kernel void glass_shadow(const vitrail_GridDesc grid, const vitrail_CameraDesc camera, const vitrail_LightDesc light,
                          global const float* positions, global const uint* indices, global const float* normals,
                          global const uint* triangleMaterial, global const uint* nearest, global const uint* words, global const uint2* bricks,
-                         global const uint* rank, global const uchar* mip, global const vitrail_SurfaceVoxel* surface, global const uint* voxelMaterial,
+                         global const uint* rank, global const uchar* mip, global const vitrail_SurfaceVoxel* surface,
+                        global const vitrail_SurfaceVoxel* planes, global const uint* solid, global const uint2* solidBricks,
+                        global const uint* voxelMaterial,
                          global const vitrail_MaterialDesc* materials,
                          global const uint* counts, global const uint* list, global const uint* end, int bound, global float4* samples, ulong first, ulong count, uint perItem) {
-    const Volume volume = {&grid, words, bricks, rank, mip, surface, voxelMaterial, materials, bound, counts, list, end, positions, indices, normals,
+    const Volume volume = {&grid, words, bricks, rank, mip, surface, planes, solid, solidBricks, voxelMaterial, materials, bound, counts, list, end, positions, indices, normals,
                            triangleMaterial};
     const float3 toLight = xyz(light.toLight);
     FOR_RANGE(i, count, perItem) {

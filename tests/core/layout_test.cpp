@@ -72,8 +72,8 @@ Entries hostLayout() {
     SIZE(vitrail_SurfaceVoxel);
     OFFSET(vitrail_SurfaceVoxel, normal);
     OFFSET(vitrail_SurfaceVoxel, centroid);
-    OFFSET(vitrail_SurfaceVoxel, gradient0);
-    OFFSET(vitrail_SurfaceVoxel, gradient1);
+    OFFSET(vitrail_SurfaceVoxel, slope0);
+    OFFSET(vitrail_SurfaceVoxel, slope1);
 
     SIZE(vitrail_RayEnd);
     OFFSET(vitrail_RayEnd, direction);

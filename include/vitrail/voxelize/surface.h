@@ -1,5 +1,5 @@
-// vitrail/voxelize/surface.h: conservative voxels that know the surface inside them: its mean shading normal, centroid and the gradient of
-// the normal (vitrail/layout/surface_voxel.h), gathered from a list of triangles per voxel.
+// vitrail/voxelize/surface.h: conservative voxels that know the surface inside them: up to three planes, each with its centroid, shading
+// normal and the gradient of that (vitrail/layout/surface_voxel.h), gathered from a list of triangles per voxel.
 #pragma once
 #include <vitrail/layout/surface_voxel.h>
 #include <vitrail/voxelize/conservative.h>
@@ -10,10 +10,12 @@ inline namespace v0 {
 struct SurfaceVoxels {
     Voxels voxels;                           ///< with channels count and material
     Buffer<vitrail_SurfaceVoxel> surface;    ///< by index of the occupied voxel
+    Buffer<vitrail_SurfaceVoxel> planes;     ///< of voxels that have more than one; one unused record where none has
 };
 
-/// Waits twice for sizes (occupied voxels, fragments). Needs a box grid and a mesh on the device with shading normals; face normals where
-/// it has none. Memory beside Conservative's with channels: 16 bytes and a 4-byte cursor an occupied voxel, 4 bytes a fragment.
+/// Waits three times for sizes (occupied voxels, fragments, planes). Needs a box grid and a mesh on the device with shading normals; face normals where
+/// it has none. Memory beside Conservative's with channels: 16 bytes and two 4-byte cursors an occupied voxel, 4 bytes a fragment, 16 a
+/// plane of those that have more than one.
 /// Throws as voxelize(..., Conservative); Error (unsupported) past 2^32 - 1 fragments.
 SurfaceVoxels voxelizeSurface(Queue& queue, const DeviceMesh& mesh, const Grid& grid);
 
