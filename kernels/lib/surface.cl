@@ -15,8 +15,8 @@ static inline float3 surface_centroid(vitrail_SurfaceVoxel s) {
 static inline float3 surface_flat(vitrail_SurfaceVoxel s, float3 normal) {
     float3 t, b;
     frame_tangents(normal, &t, &b);
-    const float3 g = normal + t * (surface_signed(s.slope1, 1) / 511.0f) + b * (surface_signed(s.slope1, 2) / 511.0f);
-    return g / sqrt(dot(g, g));
+    const float u = surface_signed(s.slope1, 1) / 511.0f, v = surface_signed(s.slope1, 2) / 511.0f, square = u * u + v * v;
+    return (normal * (1.0f - square) + (t * u + b * v) * 2.0f) / (1.0f + square);
 }
 
 // Shading normal at `offset` from the centroid, in cells.

@@ -180,16 +180,17 @@ static inline void glass_facet(vitrail_SurfaceVoxel record, float3 corner, float
     f->t = fabs(f->slope) > 1e-6f ? dot(f->centroid - origin, f->flat) / f->slope : -1.0f;
 }
 
-// Whether the surface is there: planes of a voxel end where they cross, at what the solid behind both or either has no part in.
-static inline bool glass_counts(const Facet facets[VITRAIL_SURFACE_PLANES], int count, int which, uint relations, float3 origin, float3 direction) {
+// How far past the end of a plane the ray meets it, in cells: planes of a voxel end where they cross.
+static inline float glass_past(const Facet facets[VITRAIL_SURFACE_PLANES], int count, int which, uint relations, float3 origin, float3 direction) {
     const float3 p = origin + direction * facets[which].t;
+    float past = 0.0f;
     for (int k = 0; k < count; ++k) {
         if (k == which) continue;
         const uint relation = (relations >> (which + k - 1) * 2) & 3u;
         const float ahead = dot(p - facets[k].centroid, facets[k].flat);
-        if ((relation == VITRAIL_SURFACE_CONVEX && ahead > NEAR_EDGE) || (relation == VITRAIL_SURFACE_CONCAVE && ahead < -NEAR_EDGE)) return false;
+        if (relation != 0u) past = fmax(past, relation == VITRAIL_SURFACE_CONVEX ? ahead : -ahead);
     }
-    return true;
+    return past;
 }
 
 static inline void glass_met(const Facet* f, float3 origin, float3 direction, uint material, Crossing* hit) {
@@ -244,8 +245,11 @@ static inline bool glass_next_plane(const Volume* volume, float3 origin, float3 
                 const bool opaque = volume->materials[material].colour.w <= 0.5f;
                 int best = -1, other = -1;
                 for (int k = 0; k < count; ++k) {
-                    const float t = facets[k].t, off = fmax(fmax(dda.enter - t, t - dda.leave), 0.0f);
-                    if (!(t > tLeast) || off > REACH || !glass_counts(facets, count, k, first.slope0, origin, direction)) continue;
+                    const float t = facets[k].t;
+                    float off = fmax(fmax(dda.enter - t, t - dda.leave), 0.0f);
+                    if (!(t > tLeast) || off > REACH) continue;
+                    if (split) off = fmax(off, glass_past(facets, count, k, first.slope0, origin, direction) - NEAR_EDGE);
+                    if (off > REACH) continue;
                     if (opaque || (facets[k].slope > 0.0f) == inside) {
                         if (off <= OWN) {
                             if (best < 0 || t < facets[best].t) best = k;

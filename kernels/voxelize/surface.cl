@@ -135,7 +135,7 @@ static inline vitrail_SurfaceVoxel surface_pack(const SurfaceSum* sum) {
     uint e = 0u;
     float range = 2.44140625e-4f;  // 2^-12
     for (; e < 15u && range < most; ++e) range *= 2.0f;
-    const float unit = range / 511.0f, along = fmax(dot(flat, normal), 1e-3f);
+    const float unit = range / 511.0f, along = 1.0f + dot(flat, normal);
     out.slope0 = surface_field(g[0], unit) | surface_field(g[1], unit) << 10 | surface_field(g[2], unit) << 20 | (e & 3u) << 30;
     out.slope1 = surface_field(g[3], unit) | surface_field(dot(flat, t) / along, 1.0f / 511.0f) << 10 |
                  surface_field(dot(flat, b) / along, 1.0f / 511.0f) << 20 | (e >> 2) << 30;
@@ -144,8 +144,9 @@ static inline vitrail_SurfaceVoxel surface_pack(const SurfaceSum* sum) {
 
 // Triangles agree up to this cosine between their normals; those of a voxel whose mean normal is shorter than that of two equal areas at
 // half of it are looked at.
-#define SURFACE_AGREES 0.9f
-#define SURFACE_COHERENT 0.985f
+#define SURFACE_AGREES 0.5f
+#define SURFACE_EVEN 0.999f
+#define SURFACE_COHERENT 0.97f
 
 typedef struct {
     const vitrail_GridDesc* grid;
@@ -201,7 +202,11 @@ static inline int surface_planes(const SurfaceMesh* mesh, size_t from, size_t en
             if (dot(seed[i], flat) > dot(seed[best], flat)) best = i;
         surface_add(&part, &sums[best]);
     }
-    return count;
+    bool even = true;
+    for (int i = 0; i < count; ++i) even = even && sums[i].area > 0 && surface_length(&sums[i]) > SURFACE_EVEN;
+    if (even) return count;
+    for (int i = 1; i < count; ++i) surface_add(&sums[i], &sums[0]);
+    return 1;
 }
 
 // How the solid lies to two planes: behind both, behind either, or not known.
