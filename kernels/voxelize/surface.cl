@@ -166,6 +166,14 @@ static inline float surface_length(const SurfaceSum* sum) {
     return sqrt(dot(flat, flat));
 }
 
+// How the solid lies to two planes: behind both, behind either, or not known.
+static inline uint surface_relation(const SurfaceSum* a, const SurfaceSum* b) {
+    const float3 apart = surface_mean(b->centroid, b->area) - surface_mean(a->centroid, a->area);
+    const float3 fa = surface_mean(a->flat, a->area), fb = surface_mean(b->flat, b->area);
+    const float ab = dot(apart, fa), ba = -dot(apart, fb);
+    return ab < -0.005f && ba < -0.005f ? VITRAIL_SURFACE_CONVEX : ab > 0.005f && ba > 0.005f ? VITRAIL_SURFACE_CONCAVE : 0u;
+}
+
 // The planes of a voxel: one, or around seeds, each the largest of the triangles that agree with no seed before (of equal ones the lowest).
 // A triangle goes to the seed it agrees with best.
 static inline int surface_planes(const SurfaceMesh* mesh, size_t from, size_t end, const Point corner, SurfaceSum sums[VITRAIL_SURFACE_PLANES]) {
@@ -204,17 +212,13 @@ static inline int surface_planes(const SurfaceMesh* mesh, size_t from, size_t en
     }
     bool even = true;
     for (int i = 0; i < count; ++i) even = even && sums[i].area > 0 && surface_length(&sums[i]) > SURFACE_EVEN;
+    // Edges that bend one way; where they do not, a plane that ends at some of the others would leave holes.
+    const uint relation = surface_relation(&sums[0], &sums[1]);
+    even = even && relation != 0u;
+    if (count == 3) even = even && surface_relation(&sums[0], &sums[2]) == relation && surface_relation(&sums[1], &sums[2]) == relation;
     if (even) return count;
     for (int i = 1; i < count; ++i) surface_add(&sums[i], &sums[0]);
     return 1;
-}
-
-// How the solid lies to two planes: behind both, behind either, or not known.
-static inline uint surface_relation(const SurfaceSum* a, const SurfaceSum* b) {
-    const float3 apart = surface_mean(b->centroid, b->area) - surface_mean(a->centroid, a->area);
-    const float3 fa = surface_mean(a->flat, a->area), fb = surface_mean(b->flat, b->area);
-    const float ab = dot(apart, fa), ba = -dot(apart, fb);
-    return ab < -0.005f && ba < -0.005f ? VITRAIL_SURFACE_CONVEX : ab > 0.005f && ba > 0.005f ? VITRAIL_SURFACE_CONCAVE : 0u;
 }
 
 // Records of occupied voxels, a group of 512 cells at a time; `planes`: the number of each voxel's planes where it has more than one, else 0.
