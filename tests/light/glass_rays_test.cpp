@@ -39,14 +39,51 @@ void expectRates(const char* shape, float index, const GlassMethod& method, doub
     EXPECT_EQ(std::memcmp(rays.ends.data(), again.ends.data(), rays.ends.size() * sizeof(vitrail_RayEnd)), 0) << what;
 }
 
-// Rates at 96 voxels and 128 x 128 pixels: measured 0.9995, 0.9946, 0.9683, 0.9825 and 1, 1, 0.9934, 1, less a hundredth. The box loses the
-// voxels of its edges, whose two faces average to one plane.
+// Rates at 96 voxels and 128 x 128 pixels, a hundredth below what was measured. Edges of the box are sharp: voxels with two and three planes.
 TEST(GlassRays, OfPlanesAreNearThoseOfTheTriangles) {
     const Planes method{.resolution = 96};
     expectRates("sphere", 1.14f, method, 0.989, 0.99, 0.005);
     expectRates("torus", 1.14f, method, 0.984, 0.99, 0.005);
-    expectRates("box", 1.14f, method, 0.958, 0.983, 0.005);
+    expectRates("box", 1.14f, method, 0.99, 0.99, 0.005);
     expectRates("torus", 1.5f, method, 0.972, 0.99, 0.005);
+}
+
+/// A sphere with another inside, turned inside out, `wall` cells of a grid of `resolution` apart.
+Scene hollowSphere(float wall, float resolution) {
+    Scene scene = sceneOf("sphere", 1.14f);
+    const Mesh outer = scene.mesh;
+    const float radius = (outer.bounds().high.x - outer.bounds().low.x) / 2, inner = 1 - wall * 2 / resolution;
+    EXPECT_GT(radius, 0);
+    const Float3 centre = (outer.bounds().low + outer.bounds().high) * 0.5f;
+    const auto first = static_cast<std::uint32_t>(outer.positions.size());
+    for (std::size_t i = 0; i < outer.positions.size(); ++i) {
+        scene.mesh.positions.push_back(centre + (outer.positions[i] - centre) * inner);
+        scene.mesh.normals.push_back(-outer.normals[i]);
+    }
+    for (std::size_t i = 0; i < outer.indices.size(); i += 3)
+        for (const std::size_t k : {0, 2, 1}) scene.mesh.indices.push_back(first + outer.indices[i + k]);
+    return scene;
+}
+
+// Both sides of a wall in one voxel: two planes that face away from each other, behind both of which is glass.
+TEST(GlassRays, OfPlanesGoThroughThinWalls) {
+    for (const float wall : {0.25f, 0.5f, 1.0f, 2.0f}) {
+        const Scene scene = hollowSphere(wall, 96);
+        const Camera camera = Camera::around(scene.mesh.bounds(), 33, 22, 96, 96);
+        const RayErrors errors = compareRays(glassRays(queue(), scene, camera, Planes{.resolution = 96}).ends, reference::glass(scene, camera));
+        EXPECT_GE(errors.correct, 0.95) << "wall of " << wall;
+    }
+}
+
+// The records do not depend on the order of triangles: rays end where they did, to the last bit.
+TEST(GlassRays, OfPlanesDoNotDependOnTheOrderOfTriangles) {
+    Scene scene = sceneOf("box", 1.3f), turned = scene;
+    const std::size_t count = scene.mesh.indices.size() / 3;
+    for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t k = 0; k < 3; ++k) turned.mesh.indices[3 * i + k] = scene.mesh.indices[3 * (count - 1 - i) + k];
+    const Camera camera = Camera::around(scene.mesh.bounds(), 33, 22, 96, 96);
+    const GlassRays a = glassRays(queue(), scene, camera, Planes{.resolution = 48}), b = glassRays(queue(), turned, camera, Planes{.resolution = 48});
+    EXPECT_EQ(std::memcmp(a.ends.data(), b.ends.data(), a.ends.size() * sizeof(vitrail_RayEnd)), 0);
 }
 
 // The same crossings by other arithmetic: only rays near an edge or the critical angle may differ. Rate: 1 in 200, of stable ones 1 in 500.
