@@ -77,8 +77,9 @@ inline constexpr Method kMethods[] = {
      "Voxels with a crossing, and those between a front and a back one; what lies behind a voxel that has both is a rule's guess.", false,
      true, Role::baseline, {kNoOption, kNoOption, kNoOption}},
     {"planes", Family::glass, "Chang et al. 2013, section 5.2, with exact steps", Guarantee::none,
-     "Every crossing from planes in a voxel, at most three, and the gradients of their normals: walls a voxel thick keep 0.99 of their rays, of a quarter 0.95.", false, false,
-     Role::product,
+     "Every crossing from planes in a voxel, at most three, and the gradients of their normals: walls a voxel thick keep 0.99 of "
+     "their rays, of a quarter 0.95.",
+     false, false, Role::product,
      {MethodOption{"resolution", 256, 8, 2048, "voxels", "voxels along the longest axis"}, kNoOption, kNoOption}},
     {"exact", Family::glass, "Chang et al. 2013, section 5.2, with the triangles themselves", Guarantee::exact,
      "Every crossing with the triangles of the voxel: as rays through the mesh, up to rounding, at any resolution.", false, false, Role::product,

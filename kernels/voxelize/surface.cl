@@ -142,11 +142,9 @@ static inline vitrail_SurfaceVoxel surface_pack(const SurfaceSum* sum) {
     return out;
 }
 
-// Triangles agree up to this cosine between their normals; those of a voxel whose mean normal is shorter than that of two equal areas at
-// half of it are looked at.
-#define SURFACE_AGREES 0.5f
-#define SURFACE_EVEN 0.999f
-#define SURFACE_COHERENT 0.97f
+#define SURFACE_AGREES 0.5f     // cosine to a seed, above which a triangle starts no plane of its own
+#define SURFACE_EVEN 0.999f     // length of the mean of normals of each of several planes
+#define SURFACE_COHERENT 0.97f  // length of the mean of normals, above which one plane does
 
 typedef struct {
     const vitrail_GridDesc* grid;
