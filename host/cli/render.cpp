@@ -8,6 +8,7 @@
 #include <vitrail/io/load.h>
 #include <vitrail/light/boxes.h>
 #include <vitrail/light/glass.h>
+#include <vitrail/light/shadow.h>
 #ifdef VITRAIL_HAS_REFERENCE
 #include <vitrail/reference/truth.h>
 #endif

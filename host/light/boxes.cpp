@@ -47,7 +47,7 @@ Image shade(Queue& queue, const Voxels& voxels, const Camera& camera, const Boxe
     const Uint3 size = grid.size();
     const auto bound = static_cast<std::int32_t>(4 * (size.x + size.y + size.z));
     Buffer<float> seen = workspace.take<float>(4 * samples, "samples of a picture");
-    call.launchRange(detail::Program{"light", ""}, "boxes_shade", samples, grid.desc(), desc, static_cast<std::uint32_t>(effect.colour),
+    call.launchRange(detail::Program{"light/boxes", ""}, "boxes_shade", samples, grid.desc(), desc, static_cast<std::uint32_t>(effect.colour),
                      difference ? united : voxels.bits(), difference ? mip : voxels.mip(), these ? these : voxels.bits(),
                      difference ? none : voxels.bricks(), others, voxels.rank(), channel, bound, seen);
     auto image = detail::resolveSamples(call, seen, camera.width, camera.height, effect.samples);

@@ -18,7 +18,7 @@ std::unique_ptr<ImageState> resolveSamples(Call& call, const Buffer<float>& samp
     image->record = call.record();
     image->pixels = call.queue().workspace().take<float>(4 * pixels, "a picture");
     image->counted.rays = pixels * perSide * perSide;
-    call.launchRange(Program{"light", ""}, "glass_resolve", pixels, samples, image->pixels, width, perSide);
+    call.launchRange(Program{"light/image", ""}, "image_resolve", pixels, samples, image->pixels, width, perSide);
     return image;
 }
 

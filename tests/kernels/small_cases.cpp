@@ -3,6 +3,7 @@
 #include <vitrail/core/error.h>
 #include <vitrail/light/boxes.h>
 #include <vitrail/light/glass.h>
+#include <vitrail/light/shadow.h>
 #include <vitrail/vitrail.h>
 
 #include <cstdio>

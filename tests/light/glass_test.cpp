@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <vitrail/core/error.h>
 #include <vitrail/light/glass.h>
+#include <vitrail/light/shadow.h>
 #include <vitrail/scene/shapes.h>
 
 #include <cmath>
