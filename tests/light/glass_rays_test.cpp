@@ -5,6 +5,7 @@
 #include <vitrail/reference/glass.h>
 #include <vitrail/scene/shapes.h>
 
+#include <cmath>
 #include <cstring>
 
 #include "tests/support/device.h"
@@ -84,6 +85,44 @@ TEST(GlassRays, OfPlanesDoNotDependOnTheOrderOfTriangles) {
     const Camera camera = Camera::around(scene.mesh.bounds(), 33, 22, 96, 96);
     const GlassRays a = glassRays(queue(), scene, camera, Planes{.resolution = 48}), b = glassRays(queue(), turned, camera, Planes{.resolution = 48});
     EXPECT_EQ(std::memcmp(a.ends.data(), b.ends.data(), a.ends.size() * sizeof(vitrail_RayEnd)), 0);
+}
+
+/// Share of rays that turn by over 5 degrees, among those that leave the glass in either.
+double turnedShare(const std::vector<vitrail_RayEnd>& a, const std::vector<vitrail_RayEnd>& b) {
+    double met = 0, turned = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        const bool first = a[i].fate == VITRAIL_RAY_LEFT, second = b[i].fate == VITRAIL_RAY_LEFT;
+        if (!first && !second) continue;
+        double cosine = 0;
+        for (int k = 0; k < 3; ++k) cosine += double(a[i].direction[k]) * double(b[i].direction[k]);
+        ++met;
+        turned += !first || !second || cosine < kCorrectCosine;
+    }
+    return turned / met;
+}
+
+// From frame to frame of a shape that turns, and of one that a wave runs through, rays change as those of the reference do. Rate: at most 1.5
+// times as many.
+TEST(GlassRays, FlickerNoMoreThanTheReference) {
+    const auto frame = [](bool waves, float step) {
+        Scene scene = sceneOf("torus", 1.14f);
+        for (Float3& p : scene.mesh.positions) {
+            const float angle = waves ? 0.0f : 0.02f * step, c = std::cos(angle), s = std::sin(angle);
+            p = Float3(c * p.x - s * p.y, s * p.x + c * p.y, p.z) + Float3(0, 0, waves ? 0.05f * std::sin(4.0f * p.x + 0.2f * step) : 0.0f);
+        }
+        scene.mesh.normals.clear();
+        scene.mesh = withSmoothNormals(scene.mesh, 45.0f);
+        return scene;
+    };
+    const Camera camera = Camera::around(frame(false, 0).mesh.bounds(), 33, 22, 96, 96);
+    for (const bool waves : {false, true}) {
+        const Scene before = frame(waves, 0), after = frame(waves, 1);
+        const double own = turnedShare(reference::glass(before, camera), reference::glass(after, camera));
+        EXPECT_GT(own, 0.01);
+        for (const GlassMethod& method : {GlassMethod(Planes{.resolution = 96}), GlassMethod(Exact{.resolution = 48})})
+            EXPECT_LE(turnedShare(glassRays(queue(), before, camera, method).ends, glassRays(queue(), after, camera, method).ends), 1.5 * own)
+                << (waves ? "waves" : "turned");
+    }
 }
 
 // The same crossings by other arithmetic: only rays near an edge or the critical angle may differ. Rate: 1 in 200, of stable ones 1 in 500.
