@@ -27,11 +27,12 @@ static inline Vector gbuffer_vertex(const vitrail_CameraDesc* camera, global con
     return v;
 }
 
-// Pixels whose centres' window coordinates may lie between low and high, along an axis of `count` pixels over [-half, half].
+// Pixels whose centres' window coordinates may lie between low and high, along an axis of `count` pixels over [-half, half]. Those of
+// camera_window are off by less than 2^-19 of the axis.
 static inline void gbuffer_span(real low, real high, float half_, uint count, int* first, int* last) {
-    const real scale = REAL(count) / (REAL(2) * REAL(half_));
-    *first = (int)real_max((low + REAL(half_)) * scale - REAL(1), REAL(0));
-    *last = real_ceil_int(real_max(real_min((high + REAL(half_)) * scale, REAL(count - 1u)), REAL(-1)));
+    const real scale = REAL(count) / (REAL(2) * REAL(half_)), slack = REAL(count) * REAL(1.9073486328125e-6f) + REAL(0.0078125f) - REAL(0.5f);
+    *first = real_ceil_int(real_max((low + REAL(half_)) * scale + (REAL(-1) - slack), REAL(0)));
+    *last = real_floor_int(real_max(real_min((high + REAL(half_)) * scale + slack, REAL(count - 1u)), REAL(-1)));
 }
 
 static inline void gbuffer_triangle(const vitrail_CameraDesc* camera, global const float* positions, global const uint* indices,
@@ -62,6 +63,7 @@ static inline void gbuffer_triangle(const vitrail_CameraDesc* camera, global con
             return;
         gbuffer_span(low[0], high[0], camera->right.w, camera->width, &xFirst, &xLast);
         gbuffer_span(-high[1], -low[1], camera->up.w, camera->height, &yFirst, &yLast);  // rows run downward
+        if (xFirst > xLast || yFirst > yLast) return;
     }
     // Edge planes: through the eye, or along the view direction.
     const Vector forward = {REAL(0), REAL(0), REAL(1)};

@@ -1,90 +1,206 @@
 // voxelize/surface.cl: the surface record that the triangles of a conservative voxel add up to (vitrail/layout/surface_voxel.h), from the
 // lists that conservative_mark left. Gathering needs no atomics; sums in fixed point make the order of a list not matter.
 #include "layout/surface_voxel.h"
-#include "lib/clip.cl"
 #include "lib/frame.cl"
 #include "lib/range.cl"
 #include "lib/triangle.cl"
 #pragma OPENCL FP_CONTRACT OFF
 
-#define SURFACE_ONE REAL(4294967296.0f)
+#define SURFACE_ONE 4294967296.0f  // 2^32
+#define SURFACE_GROWN 1e-6f       // by which a cell is larger on each side, so that a triangle in its face lies in it
+#define SURFACE_LEAST 1e-12f      // area, in cells, below which a triangle's part is none
 
 // Area, centroid, shading normal, the triangles' own normal and the 3 x 3 derivative of the shading normal, all times the area.
 typedef struct {
     long area, centroid[3], normal[3], flat[3], derivative[9];
 } SurfaceSum;
 
-static inline long surface_fixed(real value) {
-    // A sliver's derivative is bounded so that no sum overflows; its area makes it count for nothing.
-    return convert_long_rte(clamp(value, REAL(-4096), REAL(4096)) * SURFACE_ONE);
+// The same of the parts of eight triangles in a voxel, a lane each, and their unit normals.
+typedef struct {
+    long8 area, centroid[3], normal[3], flat[3], derivative[9];
+    float8 unit[3];
+    uint triangle[LANES];
+} SurfaceEight;
+
+typedef struct {
+    const vitrail_GridDesc* grid;
+    global const float* positions;
+    global const uint* indices;
+    uint vertexCount;
+    global const float* normals;
+    global const uint* list;
+} SurfaceMesh;
+
+// area times value, in fixed point. A sliver's derivative is bounded so that no sum overflows; its area makes it count for nothing.
+INLINE long8 surface_fixed(real8 area, float8 value) {
+    const real8 scaled = area * LANES_REAL(clamp(value, -4096.0f, 4096.0f));
+#ifdef VITRAIL_SINGLE
+    return convert_long8_rte(scaled * SURFACE_ONE);
+#else
+    const double8 magic = (double8)(6755399441055744.0);  // 1.5 * 2^52: its last bit is 1, so that the sum is rounded to a whole number
+    return as_long8(scaled * SURFACE_ONE + magic) - as_long8(magic);
+#endif
 }
 
-static inline Point surface_normal(global const float* normals, uint vertex) {
-    const size_t at = 3 * (size_t)vertex;
-    Point n = {REAL(normals[at]), REAL(normals[at + 1]), REAL(normals[at + 2])};
-    const real length = sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
-    if (length > REAL(0)) {
-        n.x /= length;
-        n.y /= length;
-        n.z /= length;
-    }
-    return n;
+INLINE void surface_cross(const float8 a[3], const float8 b[3], float8 out[3]) {
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
 }
+INLINE float8 surface_dot(const float8 a[3], const float8 b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-// A triangle's part in a voxel, as its sums; false when it has none.
-static inline bool surface_part(const vitrail_GridDesc* grid, global const float* positions, global const uint* indices, uint vertexCount,
-                                global const float* normals, uint triangle, const Point corner, SurfaceSum* part) {
-    uint vertex[3];
-    if (!triangle_corners(positions, indices, vertexCount, triangle, vertex)) return false;
-    Point v[3], n[3], polygon[CLIP_MOST];
-    const Point flat = triangle_normal(positions, vertex);
-    for (int k = 0; k < 3; ++k) {
-        v[k] = triangle_vertex(grid, positions, vertex[k]);
-        v[k].x -= corner.x;
-        v[k].y -= corner.y;
-        v[k].z -= corner.z;
-        polygon[k] = v[k];
-        n[k] = flat;
-        if (normals) n[k] = surface_normal(normals, vertex[k]);
-    }
-    real area;
-    Point centroid;
-    const int count = clip_cell(polygon, 3);
-    if (count < 3 || !clip_area(polygon, count, &area, &centroid)) return false;
+INLINE float8 surface_inverse(float8 a) { return a == 0.0f ? (float8)(1e30f) : 1.0f / a; }
 
-    // Barycentric coordinates as linear functions: lambda_k(p) = gradient_k . (p - v_k) + 1.
-    const real ux = v[1].x - v[0].x, uy = v[1].y - v[0].y, uz = v[1].z - v[0].z;
-    const real wx = v[2].x - v[0].x, wy = v[2].y - v[0].y, wz = v[2].z - v[0].z;
-    const real nx = uy * wz - uz * wy, ny = uz * wx - ux * wz, nz = ux * wy - uy * wx;
-    const real square = nx * nx + ny * ny + nz * nz;
-    if (!(square > REAL(0))) return false;
-    real mean[3] = {REAL(0), REAL(0), REAL(0)}, derivative[9];
-    for (int i = 0; i < 9; ++i) derivative[i] = REAL(0);
+// The triangles' parts inside a box around their origin, which lies in their plane, as integrals along the parts' edges: those of the
+// triangle inside the box, and those of the box's faces inside the triangle (Green's theorem). `n`: unit normals.
+INLINE void surface_clip(const float8 v[3][3], const float8 n[3], const float8 low[3], const float8 high[3], float8* area, float8 centroid[3]) {
+    float8 sum = (float8)(0.0f), moment[3];
+    for (int i = 0; i < 3; ++i) moment[i] = (float8)(0.0f);
+    float8 along[3][3], toLow[3][3], toHigh[3][3];  // of edge k: its vector, and where along it the planes of faces i lie
+#pragma unroll
     for (int k = 0; k < 3; ++k) {
-        const Point a = v[(k + 1) % 3], b = v[(k + 2) % 3];
-        const real ex = b.x - a.x, ey = b.y - a.y, ez = b.z - a.z;
-        const real gx = (ny * ez - nz * ey) / square, gy = (nz * ex - nx * ez) / square, gz = (nx * ey - ny * ex) / square;
-        const real lambda = gx * (centroid.x - v[k].x) + gy * (centroid.y - v[k].y) + gz * (centroid.z - v[k].z) + REAL(1);
-        const real nk[3] = {n[k].x, n[k].y, n[k].z};
+        const int next = k == 2 ? 0 : k + 1;
+        float8 enter = (float8)(0.0f), leave = (float8)(1.0f), across[3];
+#pragma unroll
         for (int i = 0; i < 3; ++i) {
-            mean[i] += lambda * nk[i];
-            derivative[3 * i] += nk[i] * gx;
-            derivative[3 * i + 1] += nk[i] * gy;
-            derivative[3 * i + 2] += nk[i] * gz;
+            along[k][i] = v[next][i] - v[k][i];
+            const float8 inverse = surface_inverse(along[k][i]);
+            const float8 a = (low[i] - v[k][i]) * inverse, b = (high[i] - v[k][i]) * inverse;
+            toLow[k][i] = a;
+            toHigh[k][i] = b;
+            enter = max(enter, min(a, b));
+            leave = min(leave, max(a, b));
+        }
+        enter = min(enter, 1.0f);
+        leave = max(leave, 0.0f);
+        surface_cross(v[k], along[k], across);
+        const float8 part = max(leave - enter, 0.0f) * surface_dot(n, across);
+        sum += part;
+#pragma unroll
+        for (int i = 0; i < 3; ++i) moment[i] += part * (2.0f * v[k][i] + (enter + leave) * along[k][i]);
+    }
+#pragma unroll
+    for (int face = 0; face < 6; ++face) {
+        const int i = face >> 1, j = i == 2 ? 0 : i + 1, k = j == 2 ? 0 : j + 1;
+        const bool upper = (face & 1) != 0;
+        const float8 at = upper ? high[i] : low[i];
+        int8 in[3];
+#pragma unroll
+        for (int c = 0; c < 3; ++c) in[c] = upper ? v[c][i] <= at : v[c][i] >= at;
+        // Around the part on this side, from where the triangle's outline leaves it to where it comes back.
+        float8 fromJ = (float8)(0.0f), fromK = fromJ, toJ = fromJ, toK = fromJ;
+#pragma unroll
+        for (int c = 0; c < 3; ++c) {
+            const int next = c == 2 ? 0 : c + 1;
+            const float8 t = upper ? toHigh[c][i] : toLow[c][i];
+            const float8 pj = v[c][j] + t * along[c][j], pk = v[c][k] + t * along[c][k];
+            const int8 leaves = in[c] & ~in[next], returns = in[next] & ~in[c];
+            fromJ = leaves ? pj : fromJ;
+            fromK = leaves ? pk : fromK;
+            toJ = returns ? pj : toJ;
+            toK = returns ? pk : toK;
+        }
+        const float8 dj = toJ - fromJ, dk = toK - fromK;
+        const float8 inverseJ = surface_inverse(dj), inverseK = surface_inverse(dk);
+        const float8 aj = (low[j] - fromJ) * inverseJ, bj = (high[j] - fromJ) * inverseJ;
+        const float8 ak = (low[k] - fromK) * inverseK, bk = (high[k] - fromK) * inverseK;
+        const float8 enter = clamp(max(min(aj, bj), min(ak, bk)), 0.0f, 1.0f), leave = clamp(min(max(aj, bj), max(ak, bk)), 0.0f, 1.0f);
+        const float8 part = max(leave - enter, 0.0f) * (n[i] * (fromJ * dk - fromK * dj) + at * (n[k] * dj - n[j] * dk));
+        sum += part;
+        moment[i] += part * 2.0f * at;
+        moment[j] += part * (2.0f * fromJ + (enter + leave) * dj);
+        moment[k] += part * (2.0f * fromK + (enter + leave) * dk);
+    }
+    *area = 0.5f * sum;
+    const float8 scale = sum > 0.0f ? 1.0f / (3.0f * sum) : (float8)(0.0f);
+#pragma unroll
+    for (int i = 0; i < 3; ++i) {
+        // Rounding can carry the centroid of next to nothing anywhere.
+        const float8 least = max(low[i], min(v[0][i], min(v[1][i], v[2][i]))), most = min(high[i], max(v[0][i], max(v[1][i], v[2][i])));
+        centroid[i] = min(max(moment[i] * scale, least), most);
+    }
+}
+
+// The parts of triangles list[at] to list[at + live - 1] in the voxel whose low corner is `corner`, 1 <= live <= 8.
+INLINE void surface_eight(const SurfaceMesh* mesh, size_t at, int live, const Point corner, SurfaceEight* out) {
+    float normals[9][LANES];
+    uint triangles[LANES];
+    for (int lane = 0; lane < LANES; ++lane) {
+        triangles[lane] = mesh->list[at + (size_t)min(lane, live - 1)];
+        out->triangle[lane] = triangles[lane];
+#pragma unroll
+        for (int k = 0; k < 3; ++k) {
+            const uint vertex = mesh->indices[3 * (size_t)triangles[lane] + k], there = vertex < mesh->vertexCount ? vertex : 0u;
+            for (int i = 0; i < 3; ++i) normals[3 * k + i][lane] = mesh->normals ? mesh->normals[3 * (size_t)there + i] : 0.0f;
         }
     }
-    const real length = sqrt(mean[0] * mean[0] + mean[1] * mean[1] + mean[2] * mean[2]);
-    const real scale = length > REAL(0) ? REAL(1) / length : REAL(0);
-    part->area = surface_fixed(area);
-    part->centroid[0] = surface_fixed(area * centroid.x);
-    part->centroid[1] = surface_fixed(area * centroid.y);
-    part->centroid[2] = surface_fixed(area * centroid.z);
-    part->flat[0] = surface_fixed(area * flat.x);
-    part->flat[1] = surface_fixed(area * flat.y);
-    part->flat[2] = surface_fixed(area * flat.z);
-    for (int i = 0; i < 3; ++i) part->normal[i] = surface_fixed(area * mean[i] * scale);
-    for (int i = 0; i < 9; ++i) part->derivative[i] = surface_fixed(area * derivative[i] * scale);
-    return true;
+    real8 x[3], y[3], z[3];
+    int8 good = triangle_eight(mesh->grid, mesh->positions, mesh->indices, mesh->vertexCount, triangles, x, y, z) & (LANES_IOTA_INT < live);
+#pragma unroll
+    for (int k = 0; k < 3; ++k) {
+        x[k] -= LANES_OF(corner.x);
+        y[k] -= LANES_OF(corner.y);
+        z[k] -= LANES_OF(corner.z);
+    }
+    const real8 ux = x[1] - x[0], uy = y[1] - y[0], uz = z[1] - z[0], wx = x[2] - x[0], wy = y[2] - y[0], wz = z[2] - z[0];
+    const real8 nx = uy * wz - uz * wy, ny = uz * wx - ux * wz, nz = ux * wy - uy * wx;
+    const real8 length = sqrt(nx * nx + ny * ny + nz * nz), inverse = length > LANES_OF(0) ? LANES_OF(1) / length : LANES_OF(0);
+    good &= LANES_TRUE(length > LANES_OF(0));
+    // A point of the plane near the part, from which single precision reaches over it.
+    const real8 third = LANES_OF(1) / LANES_OF(3), zero = LANES_OF(0), one = LANES_OF(1);
+    const real8 px = lanes_min(lanes_max((x[0] + x[1] + x[2]) * third, zero), one), py = lanes_min(lanes_max((y[0] + y[1] + y[2]) * third, zero), one),
+                pz = lanes_min(lanes_max((z[0] + z[1] + z[2]) * third, zero), one);
+    const real8 off = ((x[0] - px) * nx + (y[0] - py) * ny + (z[0] - pz) * nz) * inverse * inverse;
+    const real8 ox = px + off * nx, oy = py + off * ny, oz = pz + off * nz;
+    const float8 origin[3] = {convert_float8(ox), convert_float8(oy), convert_float8(oz)};
+    const float8 n[3] = {convert_float8(nx * inverse), convert_float8(ny * inverse), convert_float8(nz * inverse)};
+    float8 v[3][3], low[3], high[3];
+#pragma unroll
+    for (int k = 0; k < 3; ++k) {
+        v[k][0] = convert_float8(x[k] - ox);
+        v[k][1] = convert_float8(y[k] - oy);
+        v[k][2] = convert_float8(z[k] - oz);
+        low[k] = -SURFACE_GROWN - origin[k];
+        high[k] = 1.0f + SURFACE_GROWN - origin[k];
+    }
+    float8 area, centroid[3];
+    surface_clip(v, n, low, high, &area, centroid);
+    good &= area > SURFACE_LEAST;
+
+    // Barycentric coordinates as linear functions: lambda_k(p) = slope_k . (p - v_k) + 1.
+    const float8 perLength = convert_float8(inverse);
+    float8 mean[3], derivative[9];
+    for (int i = 0; i < 3; ++i) mean[i] = (float8)(0.0f);
+    for (int i = 0; i < 9; ++i) derivative[i] = (float8)(0.0f);
+#pragma unroll
+    for (int k = 0; k < 3; ++k) {
+        const int a = k == 2 ? 0 : k + 1, b = a == 2 ? 0 : a + 1;
+        float8 edge[3], slope[3], away[3], shading[3];
+        for (int i = 0; i < 3; ++i) {
+            edge[i] = v[b][i] - v[a][i];
+            away[i] = centroid[i] - v[k][i];
+            shading[i] = vload8(0, normals[3 * k + i]);
+        }
+        surface_cross(n, edge, slope);
+        for (int i = 0; i < 3; ++i) slope[i] *= perLength;
+        const float8 lambda = surface_dot(slope, away) + 1.0f;
+        const float8 square = surface_dot(shading, shading), unit = square > 0.0f ? 1.0f / sqrt(square) : (float8)(0.0f);
+        for (int i = 0; i < 3; ++i) {
+            shading[i] = mesh->normals ? shading[i] * unit : n[i];
+            mean[i] += lambda * shading[i];
+            for (int j = 0; j < 3; ++j) derivative[3 * i + j] += shading[i] * slope[j];
+        }
+    }
+    const float8 square = surface_dot(mean, mean), scale = square > 0.0f ? 1.0f / sqrt(square) : (float8)(0.0f);
+    const real8 weight = LANES_REAL(good ? area : (float8)(0.0f));
+    out->area = surface_fixed(weight, (float8)(1.0f));
+    for (int i = 0; i < 3; ++i) {
+        out->unit[i] = n[i];
+        out->centroid[i] = surface_fixed(weight, centroid[i] + origin[i]);
+        out->normal[i] = surface_fixed(weight, mean[i] * scale);
+        out->flat[i] = surface_fixed(weight, n[i]);
+    }
+    for (int i = 0; i < 9; ++i) out->derivative[i] = surface_fixed(weight, derivative[i] * scale);
 }
 
 static inline void surface_zero(SurfaceSum* sum) {
@@ -101,6 +217,22 @@ static inline void surface_add(const SurfaceSum* part, SurfaceSum* sum) {
         sum->flat[i] += part->flat[i];
     }
     for (int i = 0; i < 9; ++i) sum->derivative[i] += part->derivative[i];
+}
+
+INLINE long surface_across(long8 v, long8 which) {
+    const long8 a = v & which;
+    return ((a.s0 + a.s1) + (a.s2 + a.s3)) + ((a.s4 + a.s5) + (a.s6 + a.s7));
+}
+
+// Adds the parts of the lanes in `which` (-1).
+INLINE void surface_add_eight(const SurfaceEight* parts, long8 which, SurfaceSum* sum) {
+    sum->area += surface_across(parts->area, which);
+    for (int i = 0; i < 3; ++i) {
+        sum->centroid[i] += surface_across(parts->centroid[i], which);
+        sum->normal[i] += surface_across(parts->normal[i], which);
+        sum->flat[i] += surface_across(parts->flat[i], which);
+    }
+    for (int i = 0; i < 9; ++i) sum->derivative[i] += surface_across(parts->derivative[i], which);
 }
 
 static inline float3 surface_mean(const long v[3], long area) {
@@ -146,19 +278,6 @@ static inline vitrail_SurfaceVoxel surface_pack(const SurfaceSum* sum) {
 #define SURFACE_EVEN 0.999f     // length of the mean of normals of each of several planes
 #define SURFACE_COHERENT 0.97f  // length of the mean of normals, above which one plane does
 
-typedef struct {
-    const vitrail_GridDesc* grid;
-    global const float* positions;
-    global const uint* indices;
-    uint vertexCount;
-    global const float* normals;
-    global const uint* list;
-} SurfaceMesh;
-
-static inline bool surface_part_of(const SurfaceMesh* mesh, size_t at, const Point corner, SurfaceSum* part) {
-    return surface_part(mesh->grid, mesh->positions, mesh->indices, mesh->vertexCount, mesh->normals, mesh->list[at], corner, part);
-}
-
 static inline float surface_length(const SurfaceSum* sum) {
     const float3 flat = surface_mean(sum->flat, sum->area);
     return sqrt(dot(flat, flat));
@@ -172,41 +291,62 @@ static inline uint surface_relation(const SurfaceSum* a, const SurfaceSum* b) {
     return ab < -0.005f && ba < -0.005f ? VITRAIL_SURFACE_CONVEX : ab > 0.005f && ba > 0.005f ? VITRAIL_SURFACE_CONCAVE : 0u;
 }
 
+#define SURFACE_KEPT 4  // eights of a voxel that are not clipped again
+
 // The planes of a voxel: one, or around seeds, each the largest of the triangles that agree with no seed before (of equal ones the lowest).
 // A triangle goes to the seed it agrees with best.
 static inline int surface_planes(const SurfaceMesh* mesh, size_t from, size_t end, const Point corner, SurfaceSum sums[VITRAIL_SURFACE_PLANES]) {
-    SurfaceSum part;
-    surface_zero(&sums[0]);
-    for (size_t at = from; at < end; ++at)
-        if (surface_part_of(mesh, at, corner, &part)) surface_add(&part, &sums[0]);
-    if (sums[0].area <= 0 || surface_length(&sums[0]) > SURFACE_COHERENT) return 1;
+    SurfaceEight kept[SURFACE_KEPT];
+    const int eights = (int)((end - from + LANES - 1) / LANES);
     float3 seed[VITRAIL_SURFACE_PLANES];
     int count = 0;
-    for (; count < VITRAIL_SURFACE_PLANES; ++count) {
+    surface_zero(&sums[0]);
+    // Round 0 adds all up; then come the seeds, a round each, and last, below, the sums around them.
+    for (int round = 0; round <= VITRAIL_SURFACE_PLANES; ++round) {
         long most = 0;
         uint lowest = 0u;
-        for (size_t at = from; at < end; ++at) {
-            if (!surface_part_of(mesh, at, corner, &part) || part.area < most || (part.area == most && mesh->list[at] >= lowest)) continue;
-            if (part.area <= 0) continue;
-            const float3 flat = surface_mean(part.flat, part.area);
-            bool agrees = false;
-            for (int i = 0; i < count; ++i) agrees = agrees || dot(seed[i], flat) > SURFACE_AGREES;
-            if (agrees) continue;
-            most = part.area;
-            lowest = mesh->list[at];
-            seed[count] = flat;
+        for (int e = 0; e < eights; ++e) {
+            SurfaceEight* parts = &kept[e % SURFACE_KEPT];
+            const size_t at = from + (size_t)e * LANES;
+            if (round == 0 || eights > SURFACE_KEPT) surface_eight(mesh, at, (int)min(end - at, (size_t)LANES), corner, parts);
+            if (round == 0) {
+                surface_add_eight(parts, (long8)(-1), &sums[0]);
+                continue;
+            }
+            for (int lane = 0; lane < LANES; ++lane) {
+                const long area = ((const long*)&parts->area)[lane];
+                if (area <= 0 || area < most || (area == most && parts->triangle[lane] >= lowest)) continue;
+                const float3 flat =
+                    (float3)(((const float*)&parts->unit[0])[lane], ((const float*)&parts->unit[1])[lane], ((const float*)&parts->unit[2])[lane]);
+                bool agrees = false;
+                for (int i = 0; i < count; ++i) agrees = agrees || dot(seed[i], flat) > SURFACE_AGREES;
+                if (agrees) continue;
+                most = area;
+                lowest = parts->triangle[lane];
+                seed[count] = flat;
+            }
+        }
+        if (round == 0) {
+            if (sums[0].area <= 0 || surface_length(&sums[0]) > SURFACE_COHERENT) return 1;
+            continue;
         }
         if (most == 0) break;
+        ++count;
     }
     if (count < 2) return 1;
     for (int i = 0; i < count; ++i) surface_zero(&sums[i]);
-    for (size_t at = from; at < end; ++at) {
-        if (!surface_part_of(mesh, at, corner, &part) || part.area <= 0) continue;
-        const float3 flat = surface_mean(part.flat, part.area);
-        int best = 0;
-        for (int i = 1; i < count; ++i)
-            if (dot(seed[i], flat) > dot(seed[best], flat)) best = i;
-        surface_add(&part, &sums[best]);
+    for (int e = 0; e < eights; ++e) {
+        SurfaceEight* parts = &kept[e % SURFACE_KEPT];
+        const size_t at = from + (size_t)e * LANES;
+        if (eights > SURFACE_KEPT) surface_eight(mesh, at, (int)min(end - at, (size_t)LANES), corner, parts);
+        float8 best = (float8)(-2.0f);
+        int8 whose = (int8)(0);
+        for (int i = 0; i < count; ++i) {
+            const float8 agreement = parts->unit[0] * seed[i].x + parts->unit[1] * seed[i].y + parts->unit[2] * seed[i].z;
+            whose = agreement > best ? (int8)(i) : whose;
+            best = max(best, agreement);
+        }
+        for (int i = 0; i < count; ++i) surface_add_eight(parts, convert_long8(whose == i), &sums[i]);
     }
     bool even = true;
     for (int i = 0; i < count; ++i) even = even && sums[i].area > 0 && surface_length(&sums[i]) > SURFACE_EVEN;
