@@ -148,6 +148,7 @@ Json record(const ImageReport& report) {
             {"rays", report.rays},
             {"lostRays", report.lostRays},
             {"boundedRays", report.boundedRays},
+            {"voxelizeMs", report.voxelizeMs},
             {"kernelMs", report.kernelMs},
             {"wallMs", report.wallMs},
             {"uploadMs", report.uploadMs},

@@ -46,12 +46,13 @@ Image shade(Queue& queue, const Scene& scene, const Camera& camera, const Glass&
 GlassRays glassRays(Queue& queue, const Scene& scene, const Camera& camera, const GlassMethod& method) {
     detail::checkGlass(scene, method);
     GlassRays out;
-    std::shared_ptr<detail::Record> record;
+    std::shared_ptr<detail::Record> record, voxelizing;
     {
         detail::Call call(queue, "tracing glass of " + std::to_string(scene.mesh.triangleCount()) + " triangles");
         const std::uint64_t pixels = static_cast<std::uint64_t>(camera.width) * camera.height;
         Buffer<vitrail_RayEnd> ends = queue.workspace().take<vitrail_RayEnd>(pixels, "ends of rays");
         const detail::MarchVolume volume = detail::marchVolume(call, scene, camera, method);
+        voxelizing = volume.voxelizing;
         detail::launchMarch(call, "glass", "glass_ends", volume, pixels, ends);
         out.ends = ends.read(queue);
         out.report.effect = "rays";
@@ -62,6 +63,7 @@ GlassRays glassRays(Queue& queue, const Scene& scene, const Camera& camera, cons
         record = call.record();
     }
     static_cast<CallReport&>(out.report) = detail::resolve(*record);
+    out.report.voxelizeMs = detail::resolve(*voxelizing).kernelMs;
     out.report.rays = out.ends.size();
     for (const vitrail_RayEnd& end : out.ends) {
         out.report.lostRays += end.fate == VITRAIL_RAY_LOST;

@@ -51,6 +51,7 @@ const ImageReport& Image::report() const {
     if (!state_->report) {
         ImageReport report = state_->counted;
         static_cast<CallReport&>(report) = detail::resolve(*state_->record);
+        if (state_->voxelizing) report.voxelizeMs = detail::resolve(*state_->voxelizing).kernelMs;
         if (state_->status) {
             const std::vector<std::uint32_t> status = state_->status.read(state_->queue);
             report.lostRays = status[detail::kLightLost];

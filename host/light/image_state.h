@@ -19,7 +19,7 @@ struct ImageState {
     std::uint32_t width = 0, height = 0;
     Buffer<float> pixels;
     Buffer<std::uint32_t> status;  // kLightStatusWords, or empty
-    std::shared_ptr<Record> record;
+    std::shared_ptr<Record> record, voxelizing;  // the latter null where nothing was voxelized
     ImageReport counted;           // what was known when the call returned
 
     std::optional<Picture> picture;

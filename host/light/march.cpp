@@ -44,15 +44,18 @@ MarchVolume marchVolume(Call& call, const Scene& scene, const Camera& camera, co
     call.upload(materials, table.data(), table.size());
     const Uint3 size = grid.size();
     const auto bound = static_cast<std::int32_t>(4 * (size.x + size.y + size.z));
+    Call voxelizing(queue, "voxelizing " + std::to_string(mesh.triangleCount()) + " triangles of glass");
     if (std::holds_alternative<Exact>(method)) {
         VoxelLists lists = voxelizeLists(queue, mesh, grid);
+        lists.voxels.mip();
         return {grid, std::move(mesh), std::move(lists.voxels), {}, {}, {}, std::move(lists.triangles), std::move(lists.ends), std::move(gbuffer),
-                std::move(materials), bound};
+                std::move(materials), voxelizing.record(), bound};
     }
     SurfaceVoxels surface = voxelizeSurface(queue, mesh, grid);
+    surface.voxels.mip();
     Voxels solid = voxelize(queue, mesh, grid, Solid{});
     return {grid, std::move(mesh), std::move(surface.voxels), std::move(surface.surface), std::move(surface.planes), std::move(solid), {}, {},
-            std::move(gbuffer), std::move(materials), bound};
+            std::move(gbuffer), std::move(materials), voxelizing.record(), bound};
 }
 
 Image marchPicture(Queue& queue, const Scene& scene, const Camera& camera, const GlassMethod& method, std::uint32_t perSide, const char* name,
@@ -73,6 +76,7 @@ Image marchPicture(Queue& queue, const Scene& scene, const Camera& camera, const
     launch(call, volume, samples, seen, status);
     auto image = resolveSamples(call, seen, camera.width, camera.height, perSide);
     image->status = std::move(status);
+    image->voxelizing = volume.voxelizing;
     image->counted.effect = name;
     image->counted.method = nameOf(method);
     image->counted.grid = volume.grid.size();

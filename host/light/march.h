@@ -25,6 +25,7 @@ struct MarchVolume {
     Buffer<std::uint32_t> triangles, ends;         // of Exact
     GBuffer gbuffer;
     Buffer<vitrail_MaterialDesc> materials;
+    std::shared_ptr<Record> voxelizing;  ///< what was launched for voxels, surface and solid
     std::int32_t bound;  ///< a walk crosses at most this many cells on four straight ways through the grid; a march past it is ended and counted
 };
 

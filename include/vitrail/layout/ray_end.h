@@ -25,7 +25,11 @@ typedef float vitrail_optic;
 #define VITRAIL_SQRT sqrt
 #else
 #include <cmath>
+#ifdef VITRAIL_OPTIC_SINGLE  // a peer of the device's methods
+typedef float vitrail_optic;
+#else
 typedef double vitrail_optic;
+#endif
 #define VITRAIL_SQRT std::sqrt
 #endif
 

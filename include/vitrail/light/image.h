@@ -17,6 +17,7 @@ struct ImageReport : CallReport {
     std::uint64_t rays = 0;         ///< camera samples
     std::uint64_t lostRays = 0;     ///< samples that left the grid inside glass: an open mesh or a missed voxel
     std::uint64_t boundedRays = 0;  ///< samples that met the bound of events or steps and were ended there
+    double voxelizeMs = 0;          ///< of kernelMs, from the mesh on the device to voxels that rays can be sent through
 };
 
 namespace detail {
