@@ -8,19 +8,26 @@
 typedef struct {
     float3 origin, direction, inverse;
     int x, y, z;         // the current cell
-    float enter, leave;  // the ray's stay in it, in units of `direction`
+    float tx, ty, tz;    // where the ray leaves it along each axis, in units of `direction`
+    float enter, leave;  // the ray's stay in it
     int steps;           // cells and bricks walked so far
 } Dda;
 
 static inline float dda_component(float d) { return fabs(d) < 1e-9f ? (d < 0.0f ? -1e-9f : 1e-9f) : d; }
+
+// fmin has to mind NaN, of which there is none.
+static inline float dda_min(float a, float b) { return a < b ? a : b; }
+static inline float dda_max(float a, float b) { return a > b ? a : b; }
 
 static inline float dda_boundary(int cell, float origin, float inverse) {
     return ((float)(inverse > 0.0f ? cell + 1 : cell) - origin) * inverse;
 }
 
 static inline void dda_set_leave(Dda* dda) {
-    dda->leave = fmin(dda_boundary(dda->x, dda->origin.x, dda->inverse.x),
-                      fmin(dda_boundary(dda->y, dda->origin.y, dda->inverse.y), dda_boundary(dda->z, dda->origin.z, dda->inverse.z)));
+    dda->tx = dda_boundary(dda->x, dda->origin.x, dda->inverse.x);
+    dda->ty = dda_boundary(dda->y, dda->origin.y, dda->inverse.y);
+    dda->tz = dda_boundary(dda->z, dda->origin.z, dda->inverse.z);
+    dda->leave = dda_min(dda->tx, dda_min(dda->ty, dda->tz));
 }
 
 // Starts a walk at origin + t direction, t >= 0, moved forward to where the ray enters the grid. False when it never does.
@@ -49,19 +56,24 @@ static inline bool dda_inside(const Dda* dda, const vitrail_GridDesc* grid) {
 
 // To the next cell; false when the ray leaves the grid.
 static inline bool dda_step(Dda* dda, const vitrail_GridDesc* grid) {
-    const float tx = dda_boundary(dda->x, dda->origin.x, dda->inverse.x), ty = dda_boundary(dda->y, dda->origin.y, dda->inverse.y),
-                tz = dda_boundary(dda->z, dda->origin.z, dda->inverse.z);
-    if (tx <= ty && tx <= tz)
-        dda->x += dda->inverse.x > 0.0f ? 1 : -1;
-    else if (ty <= tz)
-        dda->y += dda->inverse.y > 0.0f ? 1 : -1;
-    else
-        dda->z += dda->inverse.z > 0.0f ? 1 : -1;
-    dda->enter = fmax(dda->enter, fmin(tx, fmin(ty, tz)));
     ++dda->steps;
-    if (!dda_inside(dda, grid)) return false;
-    dda_set_leave(dda);
-    return true;
+    dda->enter = dda_max(dda->enter, dda->leave);
+    bool inside;
+    if (dda->tx <= dda->ty && dda->tx <= dda->tz) {
+        dda->x += dda->inverse.x > 0.0f ? 1 : -1;
+        dda->tx = dda_boundary(dda->x, dda->origin.x, dda->inverse.x);
+        inside = (uint)dda->x < grid->size.x;
+    } else if (dda->ty <= dda->tz) {
+        dda->y += dda->inverse.y > 0.0f ? 1 : -1;
+        dda->ty = dda_boundary(dda->y, dda->origin.y, dda->inverse.y);
+        inside = (uint)dda->y < grid->size.y;
+    } else {
+        dda->z += dda->inverse.z > 0.0f ? 1 : -1;
+        dda->tz = dda_boundary(dda->z, dda->origin.z, dda->inverse.z);
+        inside = (uint)dda->z < grid->size.z;
+    }
+    dda->leave = dda_min(dda->tx, dda_min(dda->ty, dda->tz));
+    return inside;
 }
 
 // Past the 8^3 brick that the current cell lies in; false when the ray leaves the grid.
@@ -70,7 +82,7 @@ static inline bool dda_skip_brick(Dda* dda, const vitrail_GridDesc* grid) {
     const float tx = ((float)(dda->inverse.x > 0.0f ? bx + 8 : bx) - dda->origin.x) * dda->inverse.x,
                 ty = ((float)(dda->inverse.y > 0.0f ? by + 8 : by) - dda->origin.y) * dda->inverse.y,
                 tz = ((float)(dda->inverse.z > 0.0f ? bz + 8 : bz) - dda->origin.z) * dda->inverse.z;
-    const float t = fmax(dda->enter, fmin(tx, fmin(ty, tz)));
+    const float t = dda_max(dda->enter, dda_min(tx, dda_min(ty, tz)));
     const float3 p = dda->origin + dda->direction * t;
     // Along the axis it leaves by, the next cell is known; along the others it stays within the brick.
     int x = clamp((int)p.x, bx, bx + 7), y = clamp((int)p.y, by, by + 7), z = clamp((int)p.z, bz, bz + 7);
