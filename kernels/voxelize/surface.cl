@@ -203,12 +203,6 @@ INLINE void surface_eight(const SurfaceMesh* mesh, size_t at, int live, const Po
     for (int i = 0; i < 9; ++i) out->derivative[i] = surface_fixed(weight, derivative[i] * scale);
 }
 
-static inline void surface_zero(SurfaceSum* sum) {
-    sum->area = 0;
-    for (int i = 0; i < 3; ++i) sum->centroid[i] = sum->normal[i] = sum->flat[i] = 0;
-    for (int i = 0; i < 9; ++i) sum->derivative[i] = 0;
-}
-
 static inline void surface_add(const SurfaceSum* part, SurfaceSum* sum) {
     sum->area += part->area;
     for (int i = 0; i < 3; ++i) {
@@ -219,20 +213,33 @@ static inline void surface_add(const SurfaceSum* part, SurfaceSum* sum) {
     for (int i = 0; i < 9; ++i) sum->derivative[i] += part->derivative[i];
 }
 
-INLINE long surface_across(long8 v, long8 which) {
-    const long8 a = v & which;
-    return ((a.s0 + a.s1) + (a.s2 + a.s3)) + ((a.s4 + a.s5) + (a.s6 + a.s7));
+INLINE long surface_across(long8 v) { return ((v.s0 + v.s1) + (v.s2 + v.s3)) + ((v.s4 + v.s5) + (v.s6 + v.s7)); }
+
+INLINE void surface_zero_eight(SurfaceEight* sums) {
+    sums->area = (long8)(0);
+    for (int i = 0; i < 3; ++i) sums->centroid[i] = sums->normal[i] = sums->flat[i] = (long8)(0);
+    for (int i = 0; i < 9; ++i) sums->derivative[i] = (long8)(0);
 }
 
-// Adds the parts of the lanes in `which` (-1).
-INLINE void surface_add_eight(const SurfaceEight* parts, long8 which, SurfaceSum* sum) {
-    sum->area += surface_across(parts->area, which);
+// Adds the parts of the lanes in `which` (-1), lane by lane.
+INLINE void surface_add_eight(const SurfaceEight* parts, long8 which, SurfaceEight* sums) {
+    sums->area += parts->area & which;
     for (int i = 0; i < 3; ++i) {
-        sum->centroid[i] += surface_across(parts->centroid[i], which);
-        sum->normal[i] += surface_across(parts->normal[i], which);
-        sum->flat[i] += surface_across(parts->flat[i], which);
+        sums->centroid[i] += parts->centroid[i] & which;
+        sums->normal[i] += parts->normal[i] & which;
+        sums->flat[i] += parts->flat[i] & which;
     }
-    for (int i = 0; i < 9; ++i) sum->derivative[i] += surface_across(parts->derivative[i], which);
+    for (int i = 0; i < 9; ++i) sums->derivative[i] += parts->derivative[i] & which;
+}
+
+INLINE void surface_sum(const SurfaceEight* sums, SurfaceSum* sum) {
+    sum->area = surface_across(sums->area);
+    for (int i = 0; i < 3; ++i) {
+        sum->centroid[i] = surface_across(sums->centroid[i]);
+        sum->normal[i] = surface_across(sums->normal[i]);
+        sum->flat[i] = surface_across(sums->flat[i]);
+    }
+    for (int i = 0; i < 9; ++i) sum->derivative[i] = surface_across(sums->derivative[i]);
 }
 
 static inline float3 surface_mean(const long v[3], long area) {
@@ -300,7 +307,8 @@ static inline int surface_planes(const SurfaceMesh* mesh, size_t from, size_t en
     const int eights = (int)((end - from + LANES - 1) / LANES);
     float3 seed[VITRAIL_SURFACE_PLANES];
     int count = 0;
-    surface_zero(&sums[0]);
+    SurfaceEight all;
+    surface_zero_eight(&all);
     // Round 0 adds all up; then come the seeds, a round each, and last, below, the sums around them.
     for (int round = 0; round <= VITRAIL_SURFACE_PLANES; ++round) {
         long most = 0;
@@ -310,7 +318,7 @@ static inline int surface_planes(const SurfaceMesh* mesh, size_t from, size_t en
             const size_t at = from + (size_t)e * LANES;
             if (round == 0 || eights > SURFACE_KEPT) surface_eight(mesh, at, (int)min(end - at, (size_t)LANES), corner, parts);
             if (round == 0) {
-                surface_add_eight(parts, (long8)(-1), &sums[0]);
+                surface_add_eight(parts, (long8)(-1), &all);
                 continue;
             }
             for (int lane = 0; lane < LANES; ++lane) {
@@ -327,6 +335,7 @@ static inline int surface_planes(const SurfaceMesh* mesh, size_t from, size_t en
             }
         }
         if (round == 0) {
+            surface_sum(&all, &sums[0]);
             if (sums[0].area <= 0 || surface_length(&sums[0]) > SURFACE_COHERENT) return 1;
             continue;
         }
@@ -334,19 +343,22 @@ static inline int surface_planes(const SurfaceMesh* mesh, size_t from, size_t en
         ++count;
     }
     if (count < 2) return 1;
-    for (int i = 0; i < count; ++i) surface_zero(&sums[i]);
-    for (int e = 0; e < eights; ++e) {
-        SurfaceEight* parts = &kept[e % SURFACE_KEPT];
-        const size_t at = from + (size_t)e * LANES;
-        if (eights > SURFACE_KEPT) surface_eight(mesh, at, (int)min(end - at, (size_t)LANES), corner, parts);
-        float8 best = (float8)(-2.0f);
-        int8 whose = (int8)(0);
-        for (int i = 0; i < count; ++i) {
-            const float8 agreement = parts->unit[0] * seed[i].x + parts->unit[1] * seed[i].y + parts->unit[2] * seed[i].z;
-            whose = agreement > best ? (int8)(i) : whose;
-            best = max(best, agreement);
+    for (int i = 0; i < count; ++i) {
+        surface_zero_eight(&all);
+        for (int e = 0; e < eights; ++e) {
+            SurfaceEight* parts = &kept[e % SURFACE_KEPT];
+            const size_t at = from + (size_t)e * LANES;
+            if (eights > SURFACE_KEPT) surface_eight(mesh, at, (int)min(end - at, (size_t)LANES), corner, parts);
+            float8 best = (float8)(-2.0f);
+            int8 whose = (int8)(0);
+            for (int k = 0; k < count; ++k) {
+                const float8 agreement = parts->unit[0] * seed[k].x + parts->unit[1] * seed[k].y + parts->unit[2] * seed[k].z;
+                whose = agreement > best ? (int8)(k) : whose;
+                best = agreement > best ? agreement : best;
+            }
+            surface_add_eight(parts, convert_long8(whose == i), &all);
         }
-        for (int i = 0; i < count; ++i) surface_add_eight(parts, convert_long8(whose == i), &sums[i]);
+        surface_sum(&all, &sums[i]);
     }
     bool even = true;
     for (int i = 0; i < count; ++i) even = even && sums[i].area > 0 && surface_length(&sums[i]) > SURFACE_EVEN;
