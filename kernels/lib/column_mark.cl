@@ -157,6 +157,8 @@ INLINE void column_triangle(bool thin, const Runs* runs, int lane, global const 
     mark.grid = &grid;                                                                                                               \
     mark.bits = bits;                                                                                                                \
     mark.channels = rank ? &channels : 0;                                                                                            \
+    uint places[2] = {0u, 0u};                                                                                                       \
+    mark.share.places = places;                                                                                                      \
     MARK_EIGHTS(triangles, blocks, live, {                                                                                           \
         Runs runs;                                                                                                                   \
         run_setup(thin, &grid, positions, indices, vertexCount, triangles, live, &runs);                                             \
@@ -164,6 +166,7 @@ INLINE void column_triangle(bool thin, const Runs* runs, int lane, global const 
             mark.triangle = triangles[lane];                                                                                         \
             column_triangle(thin, &runs, lane, positions, indices, vertexCount, blocks[lane], &mark, tasks, taskCapacity, status);   \
         }                                                                                                                            \
-    })
+    })                                                                                                                               \
+    channels_close(&channels, places);
 
 #endif
