@@ -36,12 +36,14 @@ GBuffer rasterize(Queue& queue, const DeviceMesh& mesh, const Camera& camera) {
     const std::uint64_t pixels = static_cast<std::uint64_t>(desc.width) * desc.height;
     Workspace& workspace = queue.workspace();
     GBuffer out{desc, workspace.take<std::uint32_t>(pixels, "depth map"), workspace.take<std::uint32_t>(pixels, "triangle map")};
+    Buffer<std::uint8_t> boxed = workspace.take<std::uint8_t>(mesh.triangleCount(), "triangles seen");
     call.fill(out.depth, 0xff);
     call.fill(out.triangle, 0xff);
     const detail::Program program{"raster", detail::realOptions(queue)};
-    call.launchRange(program, "gbuffer_depth", mesh.triangleCount(), desc, mesh.positions(), mesh.indices(), mesh.vertexCount(), out.depth);
+    call.launchRange(program, "gbuffer_depth", mesh.triangleCount(), desc, mesh.positions(), mesh.indices(), mesh.vertexCount(), out.depth,
+                     boxed);
     call.launchRange(program, "gbuffer_nearest", mesh.triangleCount(), desc, mesh.positions(), mesh.indices(), mesh.vertexCount(), out.depth,
-                     out.triangle);
+                     boxed, out.triangle);
     return out;
 }
 

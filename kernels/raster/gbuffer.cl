@@ -35,35 +35,36 @@ static inline void gbuffer_span(real low, real high, float half_, uint count, in
     *last = real_floor_int(real_max(real_min((high + REAL(half_)) * scale + slack, REAL(count - 1u)), REAL(-1)));
 }
 
-static inline void gbuffer_triangle(const vitrail_CameraDesc* camera, global const float* positions, global const uint* indices,
+// False: no pixel's centre lies in the triangle's box.
+static inline bool gbuffer_triangle(const vitrail_CameraDesc* camera, global const float* positions, global const uint* indices,
                                     uint vertexCount, uint triangle, bool second, global uint* depth, global uint* nearest) {
     Vector v[3];
     for (int k = 0; k < 3; ++k) {
         const uint i = indices[3 * (size_t)triangle + k];
-        if (i >= vertexCount) return;
+        if (i >= vertexCount) return false;
         v[k] = gbuffer_vertex(camera, positions, i);
-        if (!(fabs(v[k].x) + fabs(v[k].y) + fabs(v[k].z) < REAL(1e30f))) return;
+        if (!(fabs(v[k].x) + fabs(v[k].y) + fabs(v[k].z) < REAL(1e30f))) return false;
     }
     const bool flat = camera->eye.w > 0.5f;  // orthographic
-    const real nearest3 = fmin(v[0].z, fmin(v[1].z, v[2].z));
-    if (fmax(v[0].z, fmax(v[1].z, v[2].z)) <= REAL(0)) return;
+    const real nearest3 = real_min(v[0].z, real_min(v[1].z, v[2].z));
+    if (real_max(v[0].z, real_max(v[1].z, v[2].z)) <= REAL(0)) return false;
     int xFirst = 0, xLast = (int)camera->width - 1, yFirst = 0, yLast = (int)camera->height - 1;
     if (flat || nearest3 > REAL(0)) {
         real low[2], high[2];
         for (int k = 0; k < 3; ++k) {
-            const real w = flat ? REAL(1) : v[k].z;
-            const real px = v[k].x / w, py = v[k].y / w;
-            low[0] = k == 0 ? px : fmin(low[0], px);
-            high[0] = k == 0 ? px : fmax(high[0], px);
-            low[1] = k == 0 ? py : fmin(low[1], py);
-            high[1] = k == 0 ? py : fmax(high[1], py);
+            const real inverse = flat ? REAL(1) : REAL(1) / v[k].z;
+            const real px = v[k].x * inverse, py = v[k].y * inverse;
+            low[0] = k == 0 ? px : real_min(low[0], px);
+            high[0] = k == 0 ? px : real_max(high[0], px);
+            low[1] = k == 0 ? py : real_min(low[1], py);
+            high[1] = k == 0 ? py : real_max(high[1], py);
         }
         if (high[0] < -REAL(camera->right.w) || low[0] > REAL(camera->right.w) || high[1] < -REAL(camera->up.w) ||
             low[1] > REAL(camera->up.w))
-            return;
+            return false;
         gbuffer_span(low[0], high[0], camera->right.w, camera->width, &xFirst, &xLast);
         gbuffer_span(-high[1], -low[1], camera->up.w, camera->height, &yFirst, &yLast);  // rows run downward
-        if (xFirst > xLast || yFirst > yLast) return;
+        if (xFirst > xLast || yFirst > yLast) return false;
     }
     // Edge planes: through the eye, or along the view direction.
     const Vector forward = {REAL(0), REAL(0), REAL(1)};
@@ -102,14 +103,16 @@ static inline void gbuffer_triangle(const vitrail_CameraDesc* camera, global con
             else if (depth[pixel] == bits)
                 atomic_min(nearest + pixel, triangle);
         }
+    return true;
 }
 
+// boxed: a byte a triangle, 0 where the second pass need not look.
 kernel void gbuffer_depth(const vitrail_CameraDesc camera, global const float* positions, global const uint* indices, uint vertexCount,
-                          global uint* depth, ulong count, uint perItem) {
-    FOR_RANGE(i, count, perItem) gbuffer_triangle(&camera, positions, indices, vertexCount, (uint)i, false, depth, 0);
+                          global uint* depth, global uchar* boxed, ulong count, uint perItem) {
+    FOR_RANGE(i, count, perItem) boxed[i] = gbuffer_triangle(&camera, positions, indices, vertexCount, (uint)i, false, depth, 0) ? 1 : 0;
 }
 
 kernel void gbuffer_nearest(const vitrail_CameraDesc camera, global const float* positions, global const uint* indices, uint vertexCount,
-                            global uint* depth, global uint* nearest, ulong count, uint perItem) {
-    FOR_RANGE(i, count, perItem) gbuffer_triangle(&camera, positions, indices, vertexCount, (uint)i, true, depth, nearest);
+                            global uint* depth, global const uchar* boxed, global uint* nearest, ulong count, uint perItem) {
+    FOR_RANGE(i, count, perItem) if (boxed[i]) gbuffer_triangle(&camera, positions, indices, vertexCount, (uint)i, true, depth, nearest);
 }

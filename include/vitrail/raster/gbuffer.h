@@ -20,7 +20,7 @@ struct GBuffer {
 vitrail_CameraDesc describe(const Camera& camera);
 
 /// Triangles against pixel centres, both sides, without clipping: homogeneous edge functions (Olano & Greer 1997) in double precision.
-/// Enqueues. Memory: 8 bytes a pixel. Time: triangles, and pixels of their boxes.
+/// Enqueues. Memory: 8 bytes a pixel, and while it works 1 a triangle. Time: triangles, and pixels of their boxes.
 GBuffer rasterize(Queue& queue, const DeviceMesh& mesh, const Camera& camera);
 
 }  // namespace v0
