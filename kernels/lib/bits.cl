@@ -106,12 +106,16 @@ INLINE void bits_set(const Bits* to, const vitrail_GridDesc* grid, uint x, uint 
     if (bits_open(to, bits_tile(grid, x, y) + (z >> 5), &words)) atomic_or(words + bits_in_tile(x, y), mask);
 }
 
-// Index of bit `bit` of word `word` among all occupied voxels.
+// Index of bit `bit` of word `word` among all occupied voxels. Two words at a time, all of the group: a loop that may end anywhere costs more.
 INLINE uint bits_rank(global const uint* bits, global const uint* rank, size_t word, uint bit) {
-    size_t w = word / VITRAIL_WORDS_PER_RANK * VITRAIL_WORDS_PER_RANK;
-    uint index = rank[word / VITRAIL_WORDS_PER_RANK];
-    for (; w < word; ++w) index += popcount(bits[w]);
-    return index + popcount(bits[word] & ((1u << bit) - 1u));
+    const size_t group = word / VITRAIL_WORDS_PER_RANK;
+    const uint in = (uint)(word % VITRAIL_WORDS_PER_RANK);
+    global const ulong* pairs = (global const ulong*)bits + group * (VITRAIL_WORDS_PER_RANK / 2);
+    uint index = rank[group];
+#pragma unroll
+    for (uint k = 0; k < VITRAIL_WORDS_PER_RANK / 2; ++k) index += (uint)popcount(k < in / 2u ? pairs[k] : 0ul);
+    const ulong last = pairs[in / 2u] & ((1ul << ((in & 1u) * 32u + bit)) - 1ul);
+    return index + (uint)popcount(last);
 }
 
 #endif
