@@ -2,15 +2,17 @@
 // lists that conservative_mark left. Gathering needs no atomics; sums in fixed point make the order of a list not matter.
 #include "layout/surface_voxel.h"
 #include "lib/frame.cl"
+#include "lib/grid.cl"
 #include "lib/range.cl"
-#include "lib/triangle.cl"
 #pragma OPENCL FP_CONTRACT OFF
 
-#define SURFACE_ONE 4294967296.0f  // 2^32
+#define SURFACE_ONE 1073741824.0f  // 2^30; a part's area is below 1.3
+#define SURFACE_STEEPEST 64.0f     // derivative, of a sliver; what is stored goes to 8
 #define SURFACE_GROWN 1e-6f       // by which a cell is larger on each side, so that a triangle in its face lies in it
 #define SURFACE_LEAST 1e-12f      // area, in cells, below which a triangle's part is none
 
-// Area, centroid, shading normal, the triangles' own normal and the 3 x 3 derivative of the shading normal, all times the area.
+// Area, centroid, shading normal, the triangles' own normal and the 3 x 3 derivative of the shading normal over SURFACE_STEEPEST, all times
+// the area, in fixed point.
 typedef struct {
     long area, centroid[3], normal[3], flat[3], derivative[9];
 } SurfaceSum;
@@ -31,16 +33,8 @@ typedef struct {
     global const uint* list;
 } SurfaceMesh;
 
-// area times value, in fixed point. A sliver's derivative is bounded so that no sum overflows; its area makes it count for nothing.
-INLINE long8 surface_fixed(real8 area, float8 value) {
-    const real8 scaled = area * LANES_REAL(clamp(value, -4096.0f, 4096.0f));
-#ifdef VITRAIL_SINGLE
-    return convert_long8_rte(scaled * SURFACE_ONE);
-#else
-    const double8 magic = (double8)(6755399441055744.0);  // 1.5 * 2^52: its last bit is 1, so that the sum is rounded to a whole number
-    return as_long8(scaled * SURFACE_ONE + magic) - as_long8(magic);
-#endif
-}
+// Toward zero in fixed point, of the lanes in `which` (-1); |value| < 2.
+INLINE long8 surface_fixed(float8 value, int8 which) { return convert_long8(convert_int8(value * SURFACE_ONE) & which); }
 
 INLINE void surface_cross(const float8 a[3], const float8 b[3], float8 out[3]) {
     out[0] = a[1] * b[2] - a[2] * b[1];
@@ -121,54 +115,62 @@ INLINE void surface_clip(const float8 v[3][3], const float8 n[3], const float8 l
     }
 }
 
-// The parts of triangles list[at] to list[at + live - 1] in the voxel whose low corner is `corner`, 1 <= live <= 8.
+// The parts of triangles list[at] to list[at + live - 1] in the voxel whose low corner lies at `corner` of the world, 1 <= live <= 8.
 INLINE void surface_eight(const SurfaceMesh* mesh, size_t at, int live, const Point corner, SurfaceEight* out) {
-    float normals[9][LANES];
-    uint triangles[LANES];
+    const real scale = REAL(1) / REAL(mesh->grid->extent.x);
+    float corners[9][LANES], normals[9][LANES];
+    int usable[LANES];
     for (int lane = 0; lane < LANES; ++lane) {
-        triangles[lane] = mesh->list[at + (size_t)min(lane, live - 1)];
-        out->triangle[lane] = triangles[lane];
+        const uint triangle = mesh->list[at + (size_t)min(lane, live - 1)];
+        out->triangle[lane] = triangle;
+        bool good = lane < live;
 #pragma unroll
         for (int k = 0; k < 3; ++k) {
-            const uint vertex = mesh->indices[3 * (size_t)triangles[lane] + k], there = vertex < mesh->vertexCount ? vertex : 0u;
-            for (int i = 0; i < 3; ++i) normals[3 * k + i][lane] = mesh->normals ? mesh->normals[3 * (size_t)there + i] : 0.0f;
+            const uint vertex = mesh->indices[3 * (size_t)triangle + k];
+            const size_t there = 3 * (size_t)(vertex < mesh->vertexCount ? vertex : 0u);
+            good = good && vertex < mesh->vertexCount;
+            for (int i = 0; i < 3; ++i) corners[3 * k + i][lane] = mesh->positions[there + i];
+            if (mesh->normals)
+                for (int i = 0; i < 3; ++i) normals[3 * k + i][lane] = mesh->normals[there + i];
         }
+        usable[lane] = good ? -1 : 0;
     }
-    real8 x[3], y[3], z[3];
-    int8 good = triangle_eight(mesh->grid, mesh->positions, mesh->indices, mesh->vertexCount, triangles, x, y, z) & (LANES_IOTA_INT < live);
+    float8 v[3][3];  // in the cell
 #pragma unroll
     for (int k = 0; k < 3; ++k) {
-        x[k] -= LANES_OF(corner.x);
-        y[k] -= LANES_OF(corner.y);
-        z[k] -= LANES_OF(corner.z);
+        v[k][0] = convert_float8((LANES_REAL(vload8(0, corners[3 * k])) - corner.x) * scale);
+        v[k][1] = convert_float8((LANES_REAL(vload8(0, corners[3 * k + 1])) - corner.y) * scale);
+        v[k][2] = convert_float8((LANES_REAL(vload8(0, corners[3 * k + 2])) - corner.z) * scale);
     }
-    const real8 ux = x[1] - x[0], uy = y[1] - y[0], uz = z[1] - z[0], wx = x[2] - x[0], wy = y[2] - y[0], wz = z[2] - z[0];
-    const real8 nx = uy * wz - uz * wy, ny = uz * wx - ux * wz, nz = ux * wy - uy * wx;
-    const real8 length = sqrt(nx * nx + ny * ny + nz * nz), inverse = length > LANES_OF(0) ? LANES_OF(1) / length : LANES_OF(0);
-    good &= LANES_TRUE(length > LANES_OF(0));
-    // A point of the plane near the part, from which single precision reaches over it.
-    const real8 third = LANES_OF(1) / LANES_OF(3), zero = LANES_OF(0), one = LANES_OF(1);
-    const real8 px = lanes_min(lanes_max((x[0] + x[1] + x[2]) * third, zero), one), py = lanes_min(lanes_max((y[0] + y[1] + y[2]) * third, zero), one),
-                pz = lanes_min(lanes_max((z[0] + z[1] + z[2]) * third, zero), one);
-    const real8 off = ((x[0] - px) * nx + (y[0] - py) * ny + (z[0] - pz) * nz) * inverse * inverse;
-    const real8 ox = px + off * nx, oy = py + off * ny, oz = pz + off * nz;
-    const float8 origin[3] = {convert_float8(ox), convert_float8(oy), convert_float8(oz)};
-    const float8 n[3] = {convert_float8(nx * inverse), convert_float8(ny * inverse), convert_float8(nz * inverse)};
-    float8 v[3][3], low[3], high[3];
+    float8 u[3], w[3], n[3], origin[3], low[3], high[3];
 #pragma unroll
-    for (int k = 0; k < 3; ++k) {
-        v[k][0] = convert_float8(x[k] - ox);
-        v[k][1] = convert_float8(y[k] - oy);
-        v[k][2] = convert_float8(z[k] - oz);
-        low[k] = -SURFACE_GROWN - origin[k];
-        high[k] = 1.0f + SURFACE_GROWN - origin[k];
+    for (int i = 0; i < 3; ++i) {
+        u[i] = v[1][i] - v[0][i];
+        w[i] = v[2][i] - v[0][i];
+    }
+    surface_cross(u, w, n);
+    const float8 length = sqrt(surface_dot(n, n)), perLength = length > 0.0f ? 1.0f / length : (float8)(0.0f);
+    // A point of the plane near the part, to take the integrals about.
+    float8 off = (float8)(0.0f);
+#pragma unroll
+    for (int i = 0; i < 3; ++i) {
+        n[i] *= perLength;
+        const float8 mean = (v[0][i] + v[1][i] + v[2][i]) * (1.0f / 3.0f);
+        origin[i] = mean < 0.0f ? (float8)(0.0f) : mean > 1.0f ? (float8)(1.0f) : mean;
+        off += (v[0][i] - origin[i]) * n[i];
+    }
+#pragma unroll
+    for (int i = 0; i < 3; ++i) {
+        origin[i] += off * n[i];
+        low[i] = -SURFACE_GROWN - origin[i];
+        high[i] = 1.0f + SURFACE_GROWN - origin[i];
+        for (int k = 0; k < 3; ++k) v[k][i] -= origin[i];
     }
     float8 area, centroid[3];
     surface_clip(v, n, low, high, &area, centroid);
-    good &= area > SURFACE_LEAST;
+    const int8 good = vload8(0, usable) & (area > SURFACE_LEAST);
 
     // Barycentric coordinates as linear functions: lambda_k(p) = slope_k . (p - v_k) + 1.
-    const float8 perLength = convert_float8(inverse);
     float8 mean[3], derivative[9];
     for (int i = 0; i < 3; ++i) mean[i] = (float8)(0.0f);
     for (int i = 0; i < 9; ++i) derivative[i] = (float8)(0.0f);
@@ -191,16 +193,18 @@ INLINE void surface_eight(const SurfaceMesh* mesh, size_t at, int live, const Po
             for (int j = 0; j < 3; ++j) derivative[3 * i + j] += shading[i] * slope[j];
         }
     }
-    const float8 square = surface_dot(mean, mean), scale = square > 0.0f ? 1.0f / sqrt(square) : (float8)(0.0f);
-    const real8 weight = LANES_REAL(good ? area : (float8)(0.0f));
-    out->area = surface_fixed(weight, (float8)(1.0f));
+    const float8 square = surface_dot(mean, mean), weight = area * (square > 0.0f ? 1.0f / sqrt(square) : (float8)(0.0f));
+    out->area = surface_fixed(area, good);
     for (int i = 0; i < 3; ++i) {
         out->unit[i] = n[i];
-        out->centroid[i] = surface_fixed(weight, centroid[i] + origin[i]);
-        out->normal[i] = surface_fixed(weight, mean[i] * scale);
-        out->flat[i] = surface_fixed(weight, n[i]);
+        out->centroid[i] = surface_fixed(area * (centroid[i] + origin[i]), good);
+        out->normal[i] = surface_fixed(weight * mean[i], good);
+        out->flat[i] = surface_fixed(area * n[i], good);
     }
-    for (int i = 0; i < 9; ++i) out->derivative[i] = surface_fixed(weight, derivative[i] * scale);
+    for (int i = 0; i < 9; ++i) {
+        const float8 d = weight * derivative[i] * (1.0f / SURFACE_STEEPEST);
+        out->derivative[i] = surface_fixed(d < -area ? -area : d > area ? area : d, good);
+    }
 }
 
 static inline void surface_add(const SurfaceSum* part, SurfaceSum* sum) {
@@ -264,7 +268,7 @@ static inline vitrail_SurfaceVoxel surface_pack(const SurfaceSum* sum) {
     normal = frame_unpack_normal(out.normal);
     frame_tangents(normal, &t, &b);
     float3 row[3];
-    for (int i = 0; i < 3; ++i) row[i] = shaded ? surface_mean(sum->derivative + 3 * i, sum->area) : (float3)(0.0f);
+    for (int i = 0; i < 3; ++i) row[i] = shaded ? surface_mean(sum->derivative + 3 * i, sum->area) * SURFACE_STEEPEST : (float3)(0.0f);
     // d n / d t and d n / d b, then their components along t and b.
     const float3 dt = (float3)(dot(row[0], t), dot(row[1], t), dot(row[2], t));
     const float3 db = (float3)(dot(row[0], b), dot(row[1], b), dot(row[2], b));
@@ -391,7 +395,8 @@ kernel void surface_gather(const vitrail_GridDesc grid, global const float* posi
             for (; rest != 0u; rest &= rest - 1u, ++index) {
                 if (table && !(surface[index].centroid & VITRAIL_SURFACE_SPLIT)) continue;
                 const uint z = zWord + (31u - clz(rest & (0u - rest)));
-                const Point corner = {REAL(x), REAL(y), REAL(z)};
+                const real edge = REAL(grid.extent.x);
+                const Point corner = {REAL(grid.origin.x) + REAL(x) * edge, REAL(grid.origin.y) + REAL(y) * edge, REAL(grid.origin.z) + REAL(z) * edge};
                 const size_t end = cursor[index];
                 SurfaceSum sums[VITRAIL_SURFACE_PLANES];
                 const int most = surface_planes(&mesh, end - counts[index], end, corner, sums);
