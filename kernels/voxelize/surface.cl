@@ -120,21 +120,36 @@ INLINE void surface_eight(const SurfaceMesh* mesh, size_t at, int live, const Po
     const real scale = REAL(1) / REAL(mesh->grid->extent.x);
     float corners[9][LANES], normals[9][LANES];
     int usable[LANES];
+    size_t there[LANES][3];  // first, so that many loads are under way at a time
+#pragma unroll
+    for (int lane = 0; lane < LANES; ++lane) out->triangle[lane] = mesh->list[at + (size_t)min(lane, live - 1)];
+#pragma unroll
     for (int lane = 0; lane < LANES; ++lane) {
-        const uint triangle = mesh->list[at + (size_t)min(lane, live - 1)];
-        out->triangle[lane] = triangle;
-        bool good = lane < live;
+        const uint3 vertex = vload3(out->triangle[lane], mesh->indices);
+        usable[lane] = lane < live && vertex.x < mesh->vertexCount && vertex.y < mesh->vertexCount && vertex.z < mesh->vertexCount ? -1 : 0;
+        there[lane][0] = usable[lane] ? vertex.x : 0u;
+        there[lane][1] = usable[lane] ? vertex.y : 0u;
+        there[lane][2] = usable[lane] ? vertex.z : 0u;
+    }
+#pragma unroll
+    for (int lane = 0; lane < LANES; ++lane)
 #pragma unroll
         for (int k = 0; k < 3; ++k) {
-            const uint vertex = mesh->indices[3 * (size_t)triangle + k];
-            const size_t there = 3 * (size_t)(vertex < mesh->vertexCount ? vertex : 0u);
-            good = good && vertex < mesh->vertexCount;
-            for (int i = 0; i < 3; ++i) corners[3 * k + i][lane] = mesh->positions[there + i];
-            if (mesh->normals)
-                for (int i = 0; i < 3; ++i) normals[3 * k + i][lane] = mesh->normals[there + i];
+            const float3 p = vload3(there[lane][k], mesh->positions);
+            corners[3 * k][lane] = p.x;
+            corners[3 * k + 1][lane] = p.y;
+            corners[3 * k + 2][lane] = p.z;
         }
-        usable[lane] = good ? -1 : 0;
-    }
+    if (mesh->normals)
+#pragma unroll
+        for (int lane = 0; lane < LANES; ++lane)
+#pragma unroll
+            for (int k = 0; k < 3; ++k) {
+                const float3 m = vload3(there[lane][k], mesh->normals);
+                normals[3 * k][lane] = m.x;
+                normals[3 * k + 1][lane] = m.y;
+                normals[3 * k + 2][lane] = m.z;
+            }
     float8 v[3][3];  // in the cell
 #pragma unroll
     for (int k = 0; k < 3; ++k) {
@@ -172,35 +187,43 @@ INLINE void surface_eight(const SurfaceMesh* mesh, size_t at, int live, const Po
 
     // Barycentric coordinates as linear functions: lambda_k(p) = slope_k . (p - v_k) + 1.
     float8 mean[3], derivative[9];
+#pragma unroll
     for (int i = 0; i < 3; ++i) mean[i] = (float8)(0.0f);
+#pragma unroll
     for (int i = 0; i < 9; ++i) derivative[i] = (float8)(0.0f);
 #pragma unroll
     for (int k = 0; k < 3; ++k) {
         const int a = k == 2 ? 0 : k + 1, b = a == 2 ? 0 : a + 1;
         float8 edge[3], slope[3], away[3], shading[3];
+#pragma unroll
         for (int i = 0; i < 3; ++i) {
             edge[i] = v[b][i] - v[a][i];
             away[i] = centroid[i] - v[k][i];
             shading[i] = vload8(0, normals[3 * k + i]);
         }
         surface_cross(n, edge, slope);
+#pragma unroll
         for (int i = 0; i < 3; ++i) slope[i] *= perLength;
         const float8 lambda = surface_dot(slope, away) + 1.0f;
         const float8 square = surface_dot(shading, shading), unit = square > 0.0f ? 1.0f / sqrt(square) : (float8)(0.0f);
+#pragma unroll
         for (int i = 0; i < 3; ++i) {
             shading[i] = mesh->normals ? shading[i] * unit : n[i];
             mean[i] += lambda * shading[i];
+#pragma unroll
             for (int j = 0; j < 3; ++j) derivative[3 * i + j] += shading[i] * slope[j];
         }
     }
     const float8 square = surface_dot(mean, mean), weight = area * (square > 0.0f ? 1.0f / sqrt(square) : (float8)(0.0f));
     out->area = surface_fixed(area, good);
+#pragma unroll
     for (int i = 0; i < 3; ++i) {
         out->unit[i] = n[i];
         out->centroid[i] = surface_fixed(area * (centroid[i] + origin[i]), good);
         out->normal[i] = surface_fixed(weight * mean[i], good);
         out->flat[i] = surface_fixed(area * n[i], good);
     }
+#pragma unroll
     for (int i = 0; i < 9; ++i) {
         const float8 d = weight * derivative[i] * (1.0f / SURFACE_STEEPEST);
         out->derivative[i] = surface_fixed(d < -area ? -area : d > area ? area : d, good);
