@@ -14,7 +14,7 @@
 // of planes, the low bits of `centroid` are their number, and `slope0` holds 2 bits a pair, planes 0 and 1, 0 and 2, 1 and 2: what is inside
 // is behind both (VITRAIL_SURFACE_CONVEX), behind either (VITRAIL_SURFACE_CONCAVE), or not known.
 //
-// Fragments merge by area-weighted sums in 64-bit fixed point with 32 fractional bits, whatever their order: sums are exact, so they are
+// Fragments merge by area-weighted sums in 64-bit fixed point with 30 fractional bits, whatever their order: sums are exact, so they are
 // the same for any order of triangles and any number of threads.
 #ifndef VITRAIL_LAYOUT_SURFACE_VOXEL_H
 #define VITRAIL_LAYOUT_SURFACE_VOXEL_H
