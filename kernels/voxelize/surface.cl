@@ -7,19 +7,18 @@
 #pragma OPENCL FP_CONTRACT OFF
 
 #define SURFACE_ONE 1073741824.0f  // 2^30; a part's area is below 1.3
-#define SURFACE_STEEPEST 64.0f     // derivative, of a sliver; what is stored goes to 8
 #define SURFACE_GROWN 1e-6f       // by which a cell is larger on each side, so that a triangle in its face lies in it
 #define SURFACE_LEAST 1e-12f      // area, in cells, below which a triangle's part is none
 
-// Area, centroid, shading normal, the triangles' own normal and the 3 x 3 derivative of the shading normal over SURFACE_STEEPEST, all times
-// the area, in fixed point.
+// Integrals over a surface in fixed point: of 1, position p in the cell, shading normal s, the triangles' own normal, s (p - 1/2)^T row by row
+// and (p - 1/2) (p - 1/2)^T (xx, xy, xz, yy, yz, zz). Within a part s is linear in p, and the second moments of p are those of a square as large.
 typedef struct {
-    long area, centroid[3], normal[3], flat[3], derivative[9];
+    long area, centroid[3], normal[3], flat[3], along[9], square[6];
 } SurfaceSum;
 
 // The same of the parts of eight triangles in a voxel, a lane each, and their unit normals.
 typedef struct {
-    long8 area, centroid[3], normal[3], flat[3], derivative[9];
+    long8 area, centroid[3], normal[3], flat[3], along[9], square[6];
     float8 unit[3];
     uint triangle[LANES];
 } SurfaceEight;
@@ -214,19 +213,27 @@ INLINE void surface_eight(const SurfaceMesh* mesh, size_t at, int live, const Po
             for (int j = 0; j < 3; ++j) derivative[3 * i + j] += shading[i] * slope[j];
         }
     }
-    const float8 square = surface_dot(mean, mean), weight = area * (square > 0.0f ? 1.0f / sqrt(square) : (float8)(0.0f));
+    const float8 square = surface_dot(mean, mean), weight = area * (square > 0.0f ? 1.0f / sqrt(square) : (float8)(0.0f)), spread = area * (1.0f / 12.0f);
     out->area = surface_fixed(area, good);
+    float8 away[3];
 #pragma unroll
     for (int i = 0; i < 3; ++i) {
         out->unit[i] = n[i];
         out->centroid[i] = surface_fixed(area * (centroid[i] + origin[i]), good);
         out->normal[i] = surface_fixed(weight * mean[i], good);
         out->flat[i] = surface_fixed(area * n[i], good);
+        away[i] = centroid[i] + (origin[i] - 0.5f);
     }
 #pragma unroll
     for (int i = 0; i < 9; ++i) {
-        const float8 d = weight * derivative[i] * (1.0f / SURFACE_STEEPEST);
-        out->derivative[i] = surface_fixed(d < -area ? -area : d > area ? area : d, good);
+        const float8 turn = weight * spread * derivative[i];  // of a sliver it can be anything
+        out->along[i] = surface_fixed(weight * mean[i / 3] * away[i % 3] + (turn < -1.0f ? -1.0f : turn > 1.0f ? 1.0f : turn), good);
+    }
+#pragma unroll
+    for (int k = 0; k < 6; ++k) {
+        const int i = k < 3 ? 0 : k < 5 ? 1 : 2, j = k < 3 ? k : k < 5 ? k - 2 : 2;
+        const float8 own = i == j ? spread - spread * n[i] * n[j] : -spread * n[i] * n[j];
+        out->square[k] = surface_fixed(area * (away[i] * away[j] + own), good);
     }
 }
 
@@ -237,7 +244,8 @@ static inline void surface_add(const SurfaceSum* part, SurfaceSum* sum) {
         sum->normal[i] += part->normal[i];
         sum->flat[i] += part->flat[i];
     }
-    for (int i = 0; i < 9; ++i) sum->derivative[i] += part->derivative[i];
+    for (int i = 0; i < 9; ++i) sum->along[i] += part->along[i];
+    for (int i = 0; i < 6; ++i) sum->square[i] += part->square[i];
 }
 
 INLINE long surface_across(long8 v) { return ((v.s0 + v.s1) + (v.s2 + v.s3)) + ((v.s4 + v.s5) + (v.s6 + v.s7)); }
@@ -245,7 +253,8 @@ INLINE long surface_across(long8 v) { return ((v.s0 + v.s1) + (v.s2 + v.s3)) + (
 INLINE void surface_zero_eight(SurfaceEight* sums) {
     sums->area = (long8)(0);
     for (int i = 0; i < 3; ++i) sums->centroid[i] = sums->normal[i] = sums->flat[i] = (long8)(0);
-    for (int i = 0; i < 9; ++i) sums->derivative[i] = (long8)(0);
+    for (int i = 0; i < 9; ++i) sums->along[i] = (long8)(0);
+    for (int i = 0; i < 6; ++i) sums->square[i] = (long8)(0);
 }
 
 // Adds the parts of the lanes in `which` (-1), lane by lane.
@@ -256,7 +265,8 @@ INLINE void surface_add_eight(const SurfaceEight* parts, long8 which, SurfaceEig
         sums->normal[i] += parts->normal[i] & which;
         sums->flat[i] += parts->flat[i] & which;
     }
-    for (int i = 0; i < 9; ++i) sums->derivative[i] += parts->derivative[i] & which;
+    for (int i = 0; i < 9; ++i) sums->along[i] += parts->along[i] & which;
+    for (int i = 0; i < 6; ++i) sums->square[i] += parts->square[i] & which;
 }
 
 INLINE void surface_sum(const SurfaceEight* sums, SurfaceSum* sum) {
@@ -266,7 +276,8 @@ INLINE void surface_sum(const SurfaceEight* sums, SurfaceSum* sum) {
         sum->normal[i] = surface_across(sums->normal[i]);
         sum->flat[i] = surface_across(sums->flat[i]);
     }
-    for (int i = 0; i < 9; ++i) sum->derivative[i] = surface_across(sums->derivative[i]);
+    for (int i = 0; i < 9; ++i) sum->along[i] = surface_across(sums->along[i]);
+    for (int i = 0; i < 6; ++i) sum->square[i] = surface_across(sums->square[i]);
 }
 
 static inline float3 surface_mean(const long v[3], long area) {
@@ -290,11 +301,30 @@ static inline vitrail_SurfaceVoxel surface_pack(const SurfaceSum* sum) {
     float3 t, b;
     normal = frame_unpack_normal(out.normal);
     frame_tangents(normal, &t, &b);
-    float3 row[3];
-    for (int i = 0; i < 3; ++i) row[i] = shaded ? surface_mean(sum->derivative + 3 * i, sum->area) * SURFACE_STEEPEST : (float3)(0.0f);
+    // The shading normal as a linear function of the place along t and b, by least squares: covariances with it times the inverse of its own.
+    const real area = (real)sum->area;
+    real place[3], shade[3];
+    for (int i = 0; i < 3; ++i) {
+        place[i] = (real)sum->centroid[i] / area - REAL(0.5);
+        shade[i] = (real)sum->normal[i] / area;
+    }
+    const int of[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    float3 row[3], own[3];
+    for (int i = 0; i < 3; ++i) {
+        float s[3], p[3];
+        for (int j = 0; j < 3; ++j) {
+            s[j] = (float)((real)sum->along[3 * i + j] / area - shade[i] * place[j]);
+            p[j] = (float)((real)sum->square[of[3 * i + j]] / area - place[i] * place[j]);
+        }
+        row[i] = (float3)(s[0], s[1], s[2]);
+        own[i] = (float3)(p[0], p[1], p[2]);
+    }
+    const float3 nt = (float3)(dot(row[0], t), dot(row[1], t), dot(row[2], t)), nb = (float3)(dot(row[0], b), dot(row[1], b), dot(row[2], b));
+    const float3 pt = (float3)(dot(own[0], t), dot(own[1], t), dot(own[2], t)), pb = (float3)(dot(own[0], b), dot(own[1], b), dot(own[2], b));
+    const float tt = dot(pt, t), tb = dot(pt, b), bb = dot(pb, b), determinant = tt * bb - tb * tb;
     // d n / d t and d n / d b, then their components along t and b.
-    const float3 dt = (float3)(dot(row[0], t), dot(row[1], t), dot(row[2], t));
-    const float3 db = (float3)(dot(row[0], b), dot(row[1], b), dot(row[2], b));
+    const bool known = shaded && determinant > 1e-12f;
+    const float3 dt = known ? (nt * bb - nb * tb) / determinant : (float3)(0.0f), db = known ? (nb * tt - nt * tb) / determinant : (float3)(0.0f);
     const float g[4] = {dot(dt, t), dot(db, t), dot(dt, b), dot(db, b)};
     float most = 0.0f;
     for (int i = 0; i < 4; ++i) most = fmax(most, fabs(g[i]));

@@ -3,8 +3,8 @@
 //   normal    two signed 16-bit octahedral coordinates of the area-weighted mean shading normal s, u in the low half (error < 0.004 deg)
 //   centroid  10 bits each x, y, z of the surface's centroid in the cell, 0 to 1023 for 0 to 1 (error < 0.0005 cell);
 //             bit 30: there is a surface (area above 0), else the record says nothing; bit 31: more than one plane, see below
-//   slope0    the 2 x 2 derivative of the shading normal in the tangent plane, per cell, row by row: d n_t / d t, d n_t / d b, d n_b / d t,
-//   slope1    d n_b / d b, with tangents t, b of s as lib/frame.cl makes them, 10 signed bits each in units of 2^(e - 12) / 511, and the
+//   slope0    the 2 x 2 derivative of the shading normal in the tangent plane, by least squares, per cell, row by row: d n_t / d t, d n_t / d b,
+//   slope1    d n_b / d t, d n_b / d b, with tangents t, b of s as lib/frame.cl makes them, 10 signed bits each in units of 2^(e - 12) / 511, and the
 //             normal of the plane, g = ((1 - u^2 - v^2) s + 2 u t + 2 v b) / (1 + u^2 + v^2), u and v 10 signed bits in units of 1 / 511
 //             (error < 0.16 deg). slope0: three of the derivative, the low two bits of e; slope1: the fourth, u, v, the high two bits of e.
 //             Each field of 10 bits is offset by 512. Error of the derivative: 1 / 1022 of twice its largest element; beyond 8 it is cut.
