@@ -1,5 +1,6 @@
 // voxelize/lists.cl: lists of the triangles in each voxel from the fragments that conservative_mark noted (lib/channels.cl).
 #include "lib/range.cl"
+#pragma OPENCL FP_CONTRACT OFF
 #define NO_VOXEL 0xffffffffu
 
 // starts[voxel]: where its list begins.
