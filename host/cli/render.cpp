@@ -27,7 +27,7 @@ struct Options {
     std::vector<std::string> outputs;
     float yaw = 30, pitch = 20, indexOfRefraction = 0, exposure = 0, crease = 60;
     std::uint32_t samples = 2, voxelResolution = 64;
-    bool noGround = false, json = false;
+    bool noGround = false, lit = false, json = false;
     MethodOptions methodOptions;
     DeviceOptions device;
 };
@@ -85,15 +85,17 @@ int runRender(const Options& options) {
         if (options.effect == "voxels") return renderVoxels(queue, options, scene.mesh, camera);
         const Ground ground{.visible = !options.noGround};
         if (options.effect == "shadow")
-            return shade(queue, scene, camera, Shadow{.method = glassMethod(options.method, options.methodOptions), .ground = ground, .samples = options.samples});
+            return shade(queue, scene, camera,
+                         Shadow{.method = shadowMethod(options.method, options.methodOptions), .ground = ground, .samples = options.samples, .lit = options.lit});
         return shade(queue, scene, camera, Glass{.method = glassMethod(options.method, options.methodOptions), .ground = ground, .samples = options.samples});
     };
     const Image image = render();
     const Picture& picture = image.picture();
     const ImageReport& report = image.report();
     stopIfInterrupted();
-    const float exposure = options.exposure > 0 ? options.exposure : options.effect == "glass" ? automaticExposure(picture) : 1.0f;
-    for (const std::string& output : options.outputs) savePicture(output, picture, exposure, options.effect == "glass" ? ToneCurve::filmic : ToneCurve::none);
+    const bool radiance = options.effect == "glass" || (options.effect == "shadow" && options.lit);  // else shares or colours, shown as they are
+    const float exposure = options.exposure > 0 ? options.exposure : radiance ? automaticExposure(picture) : 1.0f;
+    for (const std::string& output : options.outputs) savePicture(output, picture, exposure, radiance ? ToneCurve::filmic : ToneCurve::none);
     bar.clear();
     if (options.json) {
         Json out = document("render");
@@ -129,7 +131,7 @@ void addRender(CLI::App& app, Run& run) {
     verb->add_option("-o,--output", options->outputs, "OUT.png (tone-mapped) or OUT.exr (linear); may be given more than once")
         ->required()
         ->type_name("OUT");
-    verb->add_option("--method", options->method, "of glass and shadow: " + methodNames(Family::glass))->capture_default_str()->type_name("NAME");
+    verb->add_option("--method", options->method, "of glass and shadow: " + methodNames(Family::glass) + "; of shadow: " + methodNames(Family::shadow))->capture_default_str()->type_name("NAME");
     verb->add_option("--environment", options->environment, "latitude-longitude .hdr or .exr; its brightest part becomes the light")->type_name("FILE");
     verb->add_option("--ior", options->indexOfRefraction, "index of refraction of all materials, 1 to 3; else the scene's")->check(CLI::Range(1.0, 3.0));
     verb->add_option("--size", options->size, "pixels")->capture_default_str()->type_name("WxH");
@@ -141,6 +143,7 @@ void addRender(CLI::App& app, Run& run) {
         ->check(CLI::Range(0.0, 180.0))
         ->capture_default_str();
     verb->add_flag("--no-ground", options->noGround, "no ground under the scene");
+    verb->add_flag("--lit", options->lit, "of --effect shadow with " + methodNames(Family::shadow) + ": the scene in this light, matt");
     verb->add_option("--colour", options->colour, "of --effect voxels: normal, count, or difference to the truth (red missing, blue extra)")
         ->check(CLI::IsMember({"normal", "count", "difference"}))
         ->capture_default_str();
@@ -149,6 +152,7 @@ void addRender(CLI::App& app, Run& run) {
     options->device.add(*verb);
     verb->add_flag("--json", options->json, "the report as JSON on standard output");
     options->methodOptions.add(*verb, Family::glass);
+    options->methodOptions.add(*verb, Family::shadow);
     verb->footer("vitrail render bunny.ply --effect glass --environment sky.hdr -o bunny.png -o bunny.exr");
     verb->callback([options, &run] { run = [options] { return runRender(*options); }; });
 }

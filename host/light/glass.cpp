@@ -33,12 +33,7 @@ Image shade(Queue& queue, const Scene& scene, const Camera& camera, const Glass&
         queue, scene, camera, effect.method, effect.samples, "glass",
         [&](detail::Call& call, const detail::MarchVolume& volume, std::uint64_t samples, const Buffer<float>& seen, const Buffer<std::uint32_t>& status) {
             const vitrail_LightDesc light = detail::describeLight(scene, effect.ground, scene.mesh.bounds());
-            const std::vector<Float4>& texels = scene.environment.map.pixels;
-            Buffer<float> map;
-            if (!texels.empty()) {
-                map = queue.workspace().take<float>(4 * texels.size(), "environment map");
-                call.upload(map, &texels[0].x, 4 * texels.size());
-            }
+            const Buffer<float> map = detail::uploadEnvironment(call, scene);
             detail::launchMarch(call, "glass", "glass_shade", volume, samples, light, map, status, seen);
         });
 }
