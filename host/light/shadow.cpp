@@ -59,7 +59,7 @@ Image byMap(Queue& queue, const Scene& scene, const Camera& camera, const Shadow
     const Buffer<float> map = effect.lit ? detail::uploadEnvironment(call, scene) : Buffer<float>();
     call.launchRange(detail::Program{"light/shadow_map", ""}, "shadow_map_shade", samples, voxels.grid().desc(),
                      Grid::box(Float3(0.0f), 1.0f, Uint3(1)).desc(), gbuffer.camera, mesh.positions(), mesh.indices(), mesh.normals(), mesh.materials(),
-                     gbuffer.triangle, voxels.bits(), voxels.bricks(), voxels.rank(), shadow.depth, shadow.rate, materials, light, map,
+                     gbuffer.triangle, voxels.bits(), voxels.bricks(), voxels.rank(), shadow.depth, shadow.rate, shadow.columns, materials, light, map,
                      static_cast<std::uint32_t>(effect.lit), seen);
     auto image = detail::resolveSamples(call, seen, camera.width, camera.height, effect.samples);
     image->counted.effect = "shadow";

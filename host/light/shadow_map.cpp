@@ -42,7 +42,14 @@ ShadowMap mapOf(Call& call, const DeviceMesh& mesh, const Grid& grid, const std:
     const Buffer<std::uint32_t> none;
     call.launchRange(kProgram, "shadow_map_layers", columnsOf(grid), grid.desc(), voxels.bits(), voxels.bricks(), voxels.rank(),
                      counted ? voxels.countBuffer() : none, counted ? voxels.materialBuffer() : none, table, depth);
-    return {std::move(voxels), std::move(depth), {}};
+    return {std::move(voxels), std::move(depth), {}, {}};
+}
+
+void addColumns(Call& call, ShadowMap& map) {
+    const Grid& grid = map.voxels.grid();
+    map.columns = call.queue().workspace().take<float>(4 * std::uint64_t(grid.size().x) * grid.size().y, "transmittances of columns");
+    call.launchRange(kProgram, "shadow_map_columns", columnsOf(grid), grid.desc(), map.voxels.bits(), map.voxels.bricks(), map.voxels.rank(), map.depth,
+                     map.columns);
 }
 
 }  // namespace
@@ -77,12 +84,15 @@ ShadowMap shadowMap(Call& call, const Scene& scene, const DeviceMesh& mesh, cons
         call.launchRange(kProgram, "shadow_map_bodies", columnsOf(grid), grid.desc(), map.voxels.bits(), map.voxels.bricks(), map.voxels.rank(),
                          solid.bits(), solid.bricks(), with(sigma * thickness), map.depth, map.rate);
     }
+    addColumns(call, map);
     return map;
 }
 
 ShadowMap shadowMap(Call& call, const Scene& scene, const DeviceMesh& mesh, const Uniform& method) {
     const Grid grid = lightGrid(scene, method.resolution, method.slices);
-    return mapOf(call, mesh, grid, {Float4(Float3(method.absorption), 0.0f)}, false);
+    ShadowMap map = mapOf(call, mesh, grid, {Float4(Float3(method.absorption), 0.0f)}, false);
+    addColumns(call, map);
+    return map;
 }
 
 }  // namespace detail

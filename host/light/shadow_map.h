@@ -14,6 +14,7 @@ struct ShadowMap {
     Voxels voxels;
     Buffer<float> depth;  ///< optical depth from the light to the end of the voxel's slice
     Buffer<float> rate;   ///< what each empty slice behind it adds; empty: nothing
+    Buffer<float> columns;  ///< of a column, row by row: shadow_map_columns of kernels/light/shadow_map.cl
 };
 
 ShadowMap shadowMap(Call& call, const Scene& scene, const DeviceMesh& mesh, const Counted& method);

@@ -60,12 +60,38 @@ kernel void shadow_map_bodies(const vitrail_GridDesc grid, global const uint* wo
     }
 }
 
+// Of each column the transmittance of all its voxels, and as the bits of w its first voxel's slice in the low half, in the high one that
+// behind its last; both 0 where there is none.
+kernel void shadow_map_columns(const vitrail_GridDesc grid, global const uint* words, global const uint2* bricks, global const uint* rank,
+                               global const float4* depth, global float4* columns, ulong count, uint perItem) {
+    FOR_RANGE(i, count, perItem) {
+        uint x, y;
+        if (!shadow_map_column(&grid, i, &x, &y)) continue;
+        uint first = 0u, end = 0u;
+        size_t last = 0;
+        for (uint z = 0u; z < grid.size.z; z += 32u) {
+            const size_t word = bits_word(&grid, bricks, x, y, z);
+            const uint found = words[word];
+            if (found == 0u) continue;
+            if (end == 0u) first = z + 31u - clz(found & (0u - found));
+            end = z + 32u - clz(found);
+            last = word;
+        }
+        const float3 through = end != 0u ? exp(-xyz(depth[bits_rank(words, rank, last, (end - 1u) & 31u)])) : (float3)(1.0f);
+        columns[(size_t)y * grid.size.x + x] = (float4)(through, as_float(first | (end << 16)));
+    }
+}
+
 // Of the slices before `slice` of a column.
 static inline float3 shadow_map_column_transmittance(const vitrail_GridDesc* grid, global const uint* words, global const uint2* bricks,
-                                                     global const uint* rank, global const float4* depth, global const float4* rate, int x,
-                                                     int y, int slice) {
-    if (x < 0 || y < 0 || x >= (int)grid->size.x || y >= (int)grid->size.y || slice <= 0) return (float3)(1.0f);
-    const uint end = min((uint)slice, grid->size.z);
+                                                     global const uint* rank, global const float4* depth, global const float4* rate,
+                                                     global const float4* columns, int x, int y, int slice) {
+    if (x < 0 || y < 0 || x >= (int)grid->size.x || y >= (int)grid->size.y) return (float3)(1.0f);
+    const float4 column = columns[(size_t)y * grid->size.x + x];
+    const uint range = as_uint(column.w);
+    if (slice <= (int)(range & 0xffffu)) return (float3)(1.0f);
+    if (slice >= (int)(range >> 16)) return xyz(column);
+    const uint end = (uint)slice;
     for (uint w = (end + 31u) / 32u; w-- > 0u;) {
         const size_t word = bits_word(grid, bricks, (uint)x, (uint)y, w * 32u);
         uint found = words[word];
@@ -84,7 +110,7 @@ kernel void shadow_map_shade(const vitrail_GridDesc grid, const vitrail_GridDesc
                              global const float* positions, global const uint* indices, global const float* normals,
                              global const uint* triangleMaterial, global const uint* nearest, global const uint* words,
                              global const uint2* bricks, global const uint* rank, global const float4* depth, global const float4* rate,
-                             global const vitrail_MaterialDesc* materials, const vitrail_LightDesc light, global const float4* map, uint lit,
+                             global const float4* columns, global const vitrail_MaterialDesc* materials, const vitrail_LightDesc light, global const float4* map, uint lit,
                              global float4* samples, ulong count, uint perItem) {
     const float width = 2.0f * camera.up.w / (float)camera.height;
     const float3 cell = (float3)(2.0f * grid.extent.x / (float)grid.size.x, 2.0f * grid.extent.y / (float)grid.size.y,
@@ -125,7 +151,7 @@ kernel void shadow_map_shade(const vitrail_GridDesc grid, const vitrail_GridDesc
             const float cx = x0 + (float)(k & 1), cy = y0 + (float)(k >> 1);
             const float weight = (1.0f - fabs(x - cx)) * (1.0f - fabs(y - cy));
             const float at = clamp(z - (across.x * (cx - x) + across.y * (cy - y)) * steep - slack, -1.0f, (float)grid.size.z);
-            through += shadow_map_column_transmittance(&grid, words, bricks, rank, depth, rate, (int)cx, (int)cy, (int)floor(at) + own) * weight;
+            through += shadow_map_column_transmittance(&grid, words, bricks, rank, depth, rate, columns, (int)cx, (int)cy, (int)floor(at) + own) * weight;
         }
         if (lit == 0u) {
             samples[pixel] = (float4)(through, 1.0f);

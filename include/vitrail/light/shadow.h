@@ -64,7 +64,7 @@ struct Shadow {
 };
 
 /// Limits, memory and errors as of shade(..., Glass). Counted, Uniform: memory of the voxels of Sampled with count and material, 16 bytes each of
-/// them and, with bodies of glass, their solid bits and 16 bytes more.
+/// them and each column and, with bodies of glass, their solid bits and 16 bytes more a voxel.
 Image shade(Queue& queue, const Scene& scene, const Camera& camera, const Shadow& effect);
 
 }  // namespace v0
