@@ -1,3 +1,4 @@
+#include <vitrail/light/caustics.h>
 #include <vitrail/light/glass.h>
 
 #include <vitrail/methods.h>
@@ -34,7 +35,12 @@ Image shade(Queue& queue, const Scene& scene, const Camera& camera, const Glass&
         [&](detail::Call& call, const detail::MarchVolume& volume, std::uint64_t samples, const Buffer<float>& seen, const Buffer<std::uint32_t>& status) {
             const vitrail_LightDesc light = detail::describeLight(scene, effect.ground, scene.mesh.bounds());
             const Buffer<float> map = detail::uploadEnvironment(call, scene);
-            detail::launchMarch(call, "glass", "glass_shade", volume, samples, light, map, status, seen);
+            const Buffer<float> none;
+            const CausticMap* caustic = effect.caustics;
+            const vitrail_float4 place = caustic != nullptr ? vitrail_float4{caustic->low.x, caustic->low.y, caustic->edge, static_cast<float>(caustic->texels)}
+                                                            : vitrail_float4{};
+            detail::launchMarch(call, "glass", "glass_shade", volume, samples, light, map, caustic != nullptr ? caustic->irradiance : none, place, status,
+                                seen);
         });
 }
 

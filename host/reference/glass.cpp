@@ -53,7 +53,7 @@ public:
             }
             end.fate = VITRAIL_RAY_LEFT;
             if (!inside) through *= Double3(material.baseColour);
-            const Double3 shading = normalAt(t, position - a, u, w, across, geometric);
+            const Double3 shading = shadingNormal(scene_.mesh, t, position - a, u, w, across, geometric);
             double facing[3], out[3];
             vitrail_facing(&direction.x, &shading.x, &geometric.x, facing);
             const double index = material.indexOfRefraction;
@@ -71,17 +71,6 @@ public:
     }
 
 private:
-    Double3 normalAt(std::uint32_t t, const Double3& r, const Double3& u, const Double3& w, const Double3& across, const Double3& geometric) const {
-        const std::vector<Float3>& normals = scene_.mesh.normals;
-        if (normals.empty()) return geometric;
-        const double square = glm::dot(across, across), b = std::clamp(glm::dot(glm::cross(r, w), across) / square, 0.0, 1.0),
-                     c = std::clamp(glm::dot(glm::cross(u, r), across) / square, 0.0, 1.0);
-        const auto at = [&](unsigned k) { return Double3(normals[scene_.mesh.indices[3 * t + k]]); };
-        const Double3 n = at(0) * (1 - b - c) + at(1) * b + at(2) * c;
-        const double length = glm::length(n);
-        return length > 0 ? n / length : geometric;
-    }
-
     const Scene& scene_;
     Triangles triangles_;
     double least_;

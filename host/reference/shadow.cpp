@@ -1,12 +1,11 @@
 #include <vitrail/reference/shadow.h>
 
-#include <atomic>
 #include <cmath>
-#include <thread>
 #include <vector>
 
 #include <vitrail/core/error.h>
 
+#include "reference/camera_rays.h"
 #include "reference/triangles.h"
 
 namespace vitrail {
@@ -45,14 +44,10 @@ Picture shadow(const Scene& scene, const Camera& camera, double groundHeight, un
         });
         return through * glm::exp(-depth);
     };
-    const Double3 eye(camera.eye), forward = glm::normalize(Double3(camera.target) - eye), right = glm::normalize(glm::cross(forward, Double3(camera.up))),
-                  up = glm::cross(right, forward);
-    const bool flat = camera.orthographicHeight > 0;
-    const double halfHeight = flat ? 0.5 * camera.orthographicHeight : std::tan(glm::radians(0.5 * camera.fieldOfViewDegrees)),
-                 halfWidth = halfHeight * camera.width / camera.height;
+    const CameraRays rays(camera);
     const auto seen = [&](double x, double y) {
-        const Double3 across = right * ((x / camera.width * 2 - 1) * halfWidth) + up * ((1 - y / camera.height * 2) * halfHeight);
-        const Double3 o = flat ? eye + across : eye, d = flat ? forward : glm::normalize(forward + across);
+        Double3 o, d;
+        rays.at(x, y, o, d);
         const std::uint32_t t = triangles.next(o, d, 0);
         double slope;
         if (t != kNone) return glm::dvec4(arriving(o + d * crossing(t, o, d, slope), t), 1);
@@ -62,20 +57,14 @@ Picture shadow(const Scene& scene, const Camera& camera, double groundHeight, un
         return glm::dvec4(arriving(p, kNone), 1);
     };
     Picture picture(camera.width, camera.height);
-    std::atomic<std::uint32_t> nextRow = 0;
-    const auto rows = [&] {
-        for (std::uint32_t y = nextRow++; y < camera.height; y = nextRow++)
-            for (std::uint32_t x = 0; x < camera.width; ++x) {
-                glm::dvec4 sum(0);
-                for (unsigned j = 0; j < samples; ++j)
-                    for (unsigned i = 0; i < samples; ++i) sum += seen(x + (i + 0.5) / samples, y + (j + 0.5) / samples);
-                picture.at(x, y) = Float4(sum / double(samples * samples));
-            }
-    };
-    std::vector<std::jthread> threads;
-    for (unsigned i = 1; i < std::max(1u, std::thread::hardware_concurrency()); ++i) threads.emplace_back(rows);
-    rows();
-    threads.clear();
+    forRows(camera.height, [&](std::uint32_t y) {
+        for (std::uint32_t x = 0; x < camera.width; ++x) {
+            glm::dvec4 sum(0);
+            for (unsigned j = 0; j < samples; ++j)
+                for (unsigned i = 0; i < samples; ++i) sum += seen(x + (i + 0.5) / samples, y + (j + 0.5) / samples);
+            picture.at(x, y) = Float4(sum / double(samples * samples));
+        }
+    });
     return picture;
 }
 
