@@ -168,21 +168,31 @@ TEST(Caustics, AreThoseOfRays) {
         for (const GlassMethod& method : {GlassMethod(Planes{.resolution = 96}), GlassMethod(Exact{.resolution = 48})}) {
             const CausticMap map = caustics(queue(), scene, {.method = method, .ground = ground, .photons = 400, .texels = 256});
             const reference::PhotonSums truth = reference::caustics(scene, map.light, ground.height, map.low, map.edge, map.texels);
-            const double scale = 3.0 * kPhotonParts * truth.emitted.y;
-            const double landed = truth.landed.x + truth.landed.y + truth.landed.z, absorbed = truth.absorbed.x + truth.absorbed.y + truth.absorbed.z;
-            std::printf("%s %zu: apart %g emitted %g landed %g / %g absorbed %g / %g reflected %g missed %g ended %g\n", shape, method.index(), apart(map, truth),
-                        map.report.counts.emitted / scale, map.report.counts.landed / scale, landed / truth.emitted.y / 3, map.report.counts.absorbed / scale, absorbed / truth.emitted.y / 3,
-                        map.report.counts.reflected / scale, map.report.counts.missed / scale, map.report.counts.ended / scale);
+            // Rates, half as much again as was measured (0.008 and 0.057; 0.00009 and 0.00016): at the folds of a caustic a photon off by a texel counts
+            // twice, and edges between planes send more of them astray on the thinner knot.
+            const bool exact = std::holds_alternative<Exact>(method), torus = std::string(shape) == "torus";
+            EXPECT_LE(apart(map, truth), exact ? 5e-4 : torus ? 0.012 : 0.085) << shape;
+            const auto near = [&](std::uint64_t parts, const Double3& share) {
+                EXPECT_NEAR(static_cast<double>(parts) / static_cast<double>(map.report.counts.emitted), (share.x + share.y + share.z) / (3 * truth.emitted.y), 2e-3)
+                    << shape;
+            };
+            EXPECT_NEAR(static_cast<double>(map.report.photons), truth.emitted.y, 2);  // on the outline
+            near(map.report.counts.landed, truth.landed);
+            near(map.report.counts.absorbed, truth.absorbed);
+            near(map.report.counts.reflected, truth.reflected);
+            near(map.report.counts.missed, truth.missed);
+            near(map.report.counts.ended, truth.ended);
         }
     }
 }
 
 TEST(Caustics, AreShownOnTheGround) {
     Scene scene = sceneOf(makeShape("sphere"), 1.5f);
-    scene.light.toLight = Float3(0.3f, 1.0f, 0.0f);
+    scene.light.toLight = Float3(0.8f, 1.0f, 0.0f);
+    const Ground ground{.height = -0.75f, .automatic = false};  // near the focus
     const Camera camera = Camera::around(scene.mesh.bounds(), 90, 50, 64, 64);
-    const CausticMap map = caustics(queue(), scene, {.method = Planes{.resolution = 48}, .photons = 512, .texels = 256});
-    const Glass plain{.method = Planes{.resolution = 48}, .samples = 1};
+    const CausticMap map = caustics(queue(), scene, {.method = Planes{.resolution = 48}, .ground = ground, .photons = 256, .texels = 256});
+    const Glass plain{.method = Planes{.resolution = 48}, .ground = ground, .samples = 1};
     Glass with = plain;
     with.caustics = &map;
     const Picture before = shade(queue(), scene, camera, plain).picture(), after = shade(queue(), scene, camera, with).picture();
