@@ -60,39 +60,44 @@ double wrong(Queue& queue, const CausticMap& map, const reference::PhotonSums& t
 }  // namespace
 
 int main(int argc, char** argv) {
-    return benchMain(argc, argv, {"--benchmark_repetitions=3", "--benchmark_report_aggregates_only=true", "--benchmark_min_time=0.1"}, [](Queue& queue) {
-        static std::map<std::string, Scene> scenes;
-        static std::map<std::string, Truth> truths;
-        for (const char* shape : {"torus", "knot", "vase"}) scenes.emplace(shape, sceneOf(makeShape(shape)));
-        for (const char* file : {"bunny_hr.obj", "dragon_vrip_res2.ply"})
-            if (const auto path = dataMesh(std::string("meshes/") + file)) scenes.emplace(path->stem().string(), sceneOf(load(*path)));
-        for (const auto& [name, scene] : scenes)
-            for (const std::uint32_t photons : {256u, 1024u})
-                for (const GlassMethod& method : {GlassMethod(Planes{.resolution = 128}), GlassMethod(Planes{}), GlassMethod(Exact{})}) {
-                    const bool coarse = std::holds_alternative<Planes>(method) && std::get<Planes>(method).resolution == 128.0f;
-                    const std::string row = std::holds_alternative<Planes>(method) ? "planes" : "exact", size = name + "/" + std::to_string(photons);
-                    addBenchmark(size + "/" + row + (coarse ? "/resolution=128" : ""), [&queue, &scene, size, photons, method](benchmark::State& state) {
-                        const CausticMap first = mapOf(queue, scene, method, photons);
-                        auto truth = truths.find(size);
-                        if (truth == truths.end()) truth = truths.emplace(size, truthOf(scene, first)).first;
-                        CausticReport report;
-                        for (auto _ : state) {
-                            report = mapOf(queue, scene, method, photons).report;
-                            state.SetIterationTime(report.kernelMs * 1e-3);
-                        }
-                        const auto share = [&](std::uint64_t parts) { return static_cast<double>(parts) / static_cast<double>(report.counts.emitted); };
-                        state.counters["wrong"] = wrong(queue, first, truth->second.sums);
-                        state.counters["wallMs"] = report.wallMs;
-                        state.counters["referenceMs"] = truth->second.milliseconds;
-                        state.counters["photons"] = static_cast<double>(report.photons);
-                        state.counters["landed"] = share(report.counts.landed);
-                        state.counters["landedTruth"] = truth->second.sums.landed.y / truth->second.sums.emitted.y;
-                        state.counters["absorbed"] = share(report.counts.absorbed);
-                        state.counters["reflected"] = share(report.counts.reflected);
-                        state.counters["missed"] = share(report.counts.missed);
-                        state.counters["ended"] = share(report.counts.ended);
-                        state.counters["triangles"] = static_cast<double>(scene.mesh.triangleCount());
-                    });
-                }
-    });
+    return benchMain(
+        argc, argv, {"--benchmark_repetitions=3", "--benchmark_report_aggregates_only=true", "--benchmark_min_time=0.1"}, [](Queue& queue) {
+            static std::map<std::string, Scene> scenes;
+            static std::map<std::string, Truth> truths;
+            for (const char* shape : {"torus", "knot", "vase"}) scenes.emplace(shape, sceneOf(makeShape(shape)));
+            for (const char* file : {"bunny_hr.obj", "dragon_vrip_res2.ply"})
+                if (const auto path = dataMesh(std::string("meshes/") + file)) scenes.emplace(path->stem().string(), sceneOf(load(*path)));
+            for (const auto& [name, scene] : scenes)
+                for (const std::uint32_t photons : {256u, 1024u})
+                    for (const GlassMethod& method : {GlassMethod(Planes{.resolution = 128}), GlassMethod(Planes{}), GlassMethod(Exact{})}) {
+                        const bool coarse = std::holds_alternative<Planes>(method) && std::get<Planes>(method).resolution == 128.0f;
+                        const std::string row = std::holds_alternative<Planes>(method) ? "planes" : "exact",
+                                          size = name + "/" + std::to_string(photons);
+                        addBenchmark(size + "/" + row + (coarse ? "/resolution=128" : ""),
+                                     [&queue, &scene, size, photons, method](benchmark::State& state) {
+                                         const CausticMap first = mapOf(queue, scene, method, photons);
+                                         auto truth = truths.find(size);
+                                         if (truth == truths.end()) truth = truths.emplace(size, truthOf(scene, first)).first;
+                                         CausticReport report;
+                                         for (auto _ : state) {
+                                             report = mapOf(queue, scene, method, photons).report;
+                                             state.SetIterationTime(report.kernelMs * 1e-3);
+                                         }
+                                         const auto share = [&](std::uint64_t parts) {
+                                             return static_cast<double>(parts) / static_cast<double>(report.counts.emitted);
+                                         };
+                                         state.counters["wrong"] = wrong(queue, first, truth->second.sums);
+                                         state.counters["wallMs"] = report.wallMs;
+                                         state.counters["referenceMs"] = truth->second.milliseconds;
+                                         state.counters["photons"] = static_cast<double>(report.photons);
+                                         state.counters["landed"] = share(report.counts.landed);
+                                         state.counters["landedTruth"] = glm::dot(truth->second.sums.landed, Double3(1.0)) / glm::dot(truth->second.sums.emitted, Double3(1.0));
+                                         state.counters["absorbed"] = share(report.counts.absorbed);
+                                         state.counters["reflected"] = share(report.counts.reflected);
+                                         state.counters["missed"] = share(report.counts.missed);
+                                         state.counters["ended"] = share(report.counts.ended);
+                                         state.counters["triangles"] = static_cast<double>(scene.mesh.triangleCount());
+                                     });
+                    }
+        });
 }

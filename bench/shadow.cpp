@@ -48,7 +48,9 @@ Scene glassScene() {
 
 float groundOf(const Scene& scene) { return scene.mesh.bounds().low.y - 1e-3f * glm::length(scene.mesh.bounds().high - scene.mesh.bounds().low); }
 
-Camera cameraOf(const Scene& scene, float yaw = 30.0f, std::uint32_t pixels = 512) { return Camera::around(scene.mesh.bounds(), yaw, 35.0f, pixels, pixels); }
+Camera cameraOf(const Scene& scene, float yaw = 30.0f, std::uint32_t pixels = 512) {
+    return Camera::around(scene.mesh.bounds(), yaw, 35.0f, pixels, pixels);
+}
 
 Image pictureOf(Queue& queue, const Scene& scene, const Camera& camera, const ShadowMethod& method) {
     return shade(queue, scene, camera, Shadow{.method = method, .ground = {.height = groundOf(scene), .automatic = false}});
@@ -122,31 +124,32 @@ void benchMoving(benchmark::State& state, Queue& queue, bool light, const Shadow
 }  // namespace
 
 int main(int argc, char** argv) {
-    return benchMain(argc, argv, {"--benchmark_repetitions=3", "--benchmark_report_aggregates_only=true", "--benchmark_min_time=0.1"}, [](Queue& queue) {
-        static const std::map<std::string, Scene> scenes{{"tree", treeScene()}, {"glass_knot", glassScene()}};
-        static std::map<std::string, Truth> truths;
-        const auto methodOf = [](const char* name, const std::string& columns, const std::string& option) {
-            std::vector<std::string> options{"resolution=" + columns, "slices=" + columns};
-            if (!option.empty()) options.push_back(option);
-            return shadowByName(name, options);
-        };
-        for (const auto& [name, scene] : scenes)
-            for (const char* columns : {"64", "128", "256", "512", "1024", "2048"})
-                for (const char* option : {"", "absorption=0.125", "absorption=0.25", "absorption=0.5", "absorption=1", "absorption=2"}) {
-                    const char* method = *option != '\0' ? "uniform" : "counted";
-                    addBenchmark(name + "/" + columns + "/" + method + (*option != '\0' ? std::string("/") + option : ""),
-                                 [&queue, &name, &scene, method = methodOf(method, columns, option)](benchmark::State& state) {
-                                     auto found = truths.find(name);
-                                     if (found == truths.end()) found = truths.emplace(name, truthOf(scene, cameraOf(scene))).first;
-                                     bench(state, queue, scene, found->second, method);
-                                 });
-                }
-        for (const char* what : {"light", "camera"})
-            for (const char* columns : {"128", "256", "512", "1024"})
-                addBenchmark(std::string("moving/") + what + "/" + columns + "/counted",
-                             [&queue, light = std::string(what) == "light", method = methodOf("counted", columns, "")](benchmark::State& state) {
-                                 benchMoving(state, queue, light, method);
-                             })
-                    ->Iterations(1);
-    });
+    return benchMain(
+        argc, argv, {"--benchmark_repetitions=3", "--benchmark_report_aggregates_only=true", "--benchmark_min_time=0.1"}, [](Queue& queue) {
+            static const std::map<std::string, Scene> scenes{{"tree", treeScene()}, {"glass_knot", glassScene()}};
+            static std::map<std::string, Truth> truths;
+            const auto methodOf = [](const char* name, const std::string& columns, const std::string& option) {
+                std::vector<std::string> options{"resolution=" + columns, "slices=" + columns};
+                if (!option.empty()) options.push_back(option);
+                return shadowByName(name, options);
+            };
+            for (const auto& [name, scene] : scenes)
+                for (const char* columns : {"64", "128", "256", "512", "1024", "2048"})
+                    for (const char* option : {"", "absorption=0.125", "absorption=0.25", "absorption=0.5", "absorption=1", "absorption=2"}) {
+                        const char* method = *option != '\0' ? "uniform" : "counted";
+                        addBenchmark(name + "/" + columns + "/" + method + (*option != '\0' ? std::string("/") + option : ""),
+                                     [&queue, &name, &scene, method = methodOf(method, columns, option)](benchmark::State& state) {
+                                         auto found = truths.find(name);
+                                         if (found == truths.end()) found = truths.emplace(name, truthOf(scene, cameraOf(scene))).first;
+                                         bench(state, queue, scene, found->second, method);
+                                     });
+                    }
+            for (const char* what : {"light", "camera"})
+                for (const char* columns : {"128", "256", "512", "1024"})
+                    addBenchmark(std::string("moving/") + what + "/" + columns + "/counted", [&queue, light = std::string(what) == "light",
+                                                                                              method = methodOf("counted", columns, "")](
+                                                                                                 benchmark::State& state) {
+                        benchMoving(state, queue, light, method);
+                    })->Iterations(1);
+        });
 }

@@ -42,7 +42,8 @@ CausticMap caustics(Queue& queue, const Scene& scene, const Caustics& effect) {
     const Bounds bounds = scene.mesh.bounds();
     const vitrail_LightDesc light = detail::describeLight(scene, effect.ground, bounds);
     const Float3 toLight(light.toLight.x, light.toLight.y, light.toLight.z), centre = (bounds.low + bounds.high) * 0.5f;
-    if (!(toLight.y > 0.01f)) throw Error(ErrorCode::badOption, {"caustics: the light does not come from above", "", "", "a direction to the light with y above 0"});
+    if (!(toLight.y > 0.01f))
+        throw Error(ErrorCode::badOption, {"caustics: the light does not come from above", "", "", "a direction to the light with y above 0"});
 
     CausticMap map;
     map.light = lightCamera(bounds, toLight, effect.photons);
@@ -58,8 +59,10 @@ CausticMap caustics(Queue& queue, const Scene& scene, const Caustics& effect) {
     {
         detail::Call call(queue, "photons through " + std::to_string(scene.mesh.triangleCount()) + " triangles");
         Workspace& workspace = queue.workspace();
-        const std::uint64_t texels = static_cast<std::uint64_t>(effect.texels) * effect.texels, photons = static_cast<std::uint64_t>(effect.photons) * effect.photons;
-        Buffer<std::int64_t> sums = workspace.take<std::int64_t>(3 * texels, "sums of photons"), tally = workspace.take<std::int64_t>(kCounts, "counts");
+        const std::uint64_t texels = static_cast<std::uint64_t>(effect.texels) * effect.texels,
+                            photons = static_cast<std::uint64_t>(effect.photons) * effect.photons;
+        Buffer<std::int64_t> sums = workspace.take<std::int64_t>(3 * texels, "sums of photons"),
+                             tally = workspace.take<std::int64_t>(kCounts, "counts");
         map.irradiance = workspace.take<float>(4 * texels, "a caustic");
         call.fill(sums, 0);
         call.fill(tally, 0);

@@ -48,8 +48,8 @@ ShadowMap mapOf(Call& call, const DeviceMesh& mesh, const Grid& grid, const std:
 void addColumns(Call& call, ShadowMap& map) {
     const Grid& grid = map.voxels.grid();
     map.columns = call.queue().workspace().take<float>(4 * std::uint64_t(grid.size().x) * grid.size().y, "transmittances of columns");
-    call.launchRange(kProgram, "shadow_map_columns", columnsOf(grid), grid.desc(), map.voxels.bits(), map.voxels.bricks(), map.voxels.rank(), map.depth,
-                     map.columns);
+    call.launchRange(kProgram, "shadow_map_columns", columnsOf(grid), grid.desc(), map.voxels.bits(), map.voxels.bricks(), map.voxels.rank(),
+                     map.depth, map.columns);
 }
 
 }  // namespace

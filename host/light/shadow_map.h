@@ -12,8 +12,8 @@ namespace detail {
 /// One entry an occupied voxel, four floats each, RGB.
 struct ShadowMap {
     Voxels voxels;
-    Buffer<float> depth;  ///< optical depth from the light to the end of the voxel's slice
-    Buffer<float> rate;   ///< what each empty slice behind it adds; empty: nothing
+    Buffer<float> depth;    ///< optical depth from the light to the end of the voxel's slice
+    Buffer<float> rate;     ///< what each empty slice behind it adds; empty: nothing
     Buffer<float> columns;  ///< of a column, row by row: shadow_map_columns of kernels/light/shadow_map.cl
 };
 

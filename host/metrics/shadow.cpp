@@ -15,7 +15,8 @@ namespace {
 void checkSizes(const Picture& one, const Picture& other) {
     if (one.width != other.width || one.height != other.height)
         throw Error(ErrorCode::badInput, {"pictures of " + std::to_string(one.width) + " x " + std::to_string(one.height) + " and " +
-                                              std::to_string(other.width) + " x " + std::to_string(other.height) + " pixels", "", "", "pictures of one size"});
+                                              std::to_string(other.width) + " x " + std::to_string(other.height) + " pixels",
+                                          "", "", "pictures of one size"});
 }
 
 }  // namespace

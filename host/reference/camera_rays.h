@@ -15,8 +15,12 @@ namespace reference {
 class CameraRays {
 public:
     explicit CameraRays(const Camera& camera)
-        : camera_(camera), flat_(camera.orthographicHeight > 0), eye_(camera.eye), forward_(glm::normalize(Double3(camera.target) - eye_)),
-          right_(glm::normalize(glm::cross(forward_, Double3(camera.up)))), up_(glm::cross(right_, forward_)),
+        : camera_(camera),
+          flat_(camera.orthographicHeight > 0),
+          eye_(camera.eye),
+          forward_(glm::normalize(Double3(camera.target) - eye_)),
+          right_(glm::normalize(glm::cross(forward_, Double3(camera.up)))),
+          up_(glm::cross(right_, forward_)),
           halfHeight_(flat_ ? 0.5 * camera.orthographicHeight : std::tan(glm::radians(0.5 * camera.fieldOfViewDegrees))),
           halfWidth_(halfHeight_ * camera.width / camera.height) {}
 

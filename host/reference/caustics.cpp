@@ -18,7 +18,8 @@ namespace {
 double reflectance(double cosine, double ratio) {
     const double k = 1 - ratio * ratio * (1 - cosine * cosine);
     if (k <= 0) return 1;
-    const double inner = std::sqrt(k), s = (ratio * cosine - inner) / (ratio * cosine + inner), p = (cosine - ratio * inner) / (cosine + ratio * inner);
+    const double inner = std::sqrt(k), s = (ratio * cosine - inner) / (ratio * cosine + inner),
+                 p = (cosine - ratio * inner) / (cosine + ratio * inner);
     return 0.5 * (s * s + p * p);
 }
 
@@ -83,7 +84,8 @@ PhotonSums caustics(const Scene& scene, const Camera& light, double groundHeight
         }
         const std::scoped_lock lock(joining);
         for (const auto& [texel, parts] : landed) sums.texels[texel] += parts;
-        for (Double3 PhotonSums::*one : {&PhotonSums::emitted, &PhotonSums::landed, &PhotonSums::absorbed, &PhotonSums::reflected, &PhotonSums::missed, &PhotonSums::ended})
+        for (Double3 PhotonSums::*one :
+             {&PhotonSums::emitted, &PhotonSums::landed, &PhotonSums::absorbed, &PhotonSums::reflected, &PhotonSums::missed, &PhotonSums::ended})
             sums.*one += row.*one;
     });
     return sums;

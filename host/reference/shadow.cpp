@@ -16,8 +16,9 @@ Picture shadow(const Scene& scene, const Camera& camera, double groundHeight, un
     const Mesh& mesh = scene.mesh;
     for (const std::uint32_t material : mesh.materials)
         if (material >= scene.materials.size())
-            throw Error(ErrorCode::badInput, {"a triangle names material " + std::to_string(material) + " of " + std::to_string(scene.materials.size()), "", "",
-                                              "materials that index the scene's list"});
+            throw Error(ErrorCode::badInput,
+                        {"a triangle names material " + std::to_string(material) + " of " + std::to_string(scene.materials.size()), "", "",
+                         "materials that index the scene's list"});
     const Triangles triangles(mesh, true);
     const Bounds bounds = mesh.bounds();
     const Double3 low(bounds.low), high(bounds.high), centre = (low + high) * 0.5, toLight = glm::normalize(Double3(scene.light.toLight));

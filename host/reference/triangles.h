@@ -19,10 +19,13 @@ namespace reference {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
 
-inline Double3 vertex(const Mesh& mesh, std::uint32_t triangle, int corner) { return Double3(mesh.positions[mesh.indices[3 * triangle + static_cast<unsigned>(corner)]]); }
+inline Double3 vertex(const Mesh& mesh, std::uint32_t triangle, int corner) {
+    return Double3(mesh.positions[mesh.indices[3 * triangle + static_cast<unsigned>(corner)]]);
+}
 
 /// Interpolated at r from the first corner; u, w: its edges from there, `across` their product, `geometric` that of unit length.
-inline Double3 shadingNormal(const Mesh& mesh, std::uint32_t t, const Double3& r, const Double3& u, const Double3& w, const Double3& across, const Double3& geometric) {
+inline Double3 shadingNormal(const Mesh& mesh, std::uint32_t t, const Double3& r, const Double3& u, const Double3& w, const Double3& across,
+                             const Double3& geometric) {
     const std::vector<Float3>& normals = mesh.normals;
     if (normals.empty()) return geometric;
     const double square = glm::dot(across, across), b = std::clamp(glm::dot(glm::cross(r, w), across) / square, 0.0, 1.0),

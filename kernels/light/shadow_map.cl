@@ -110,8 +110,8 @@ kernel void shadow_map_shade(const vitrail_GridDesc grid, const vitrail_GridDesc
                              global const float* positions, global const uint* indices, global const float* normals,
                              global const uint* triangleMaterial, global const uint* nearest, global const uint* words,
                              global const uint2* bricks, global const uint* rank, global const float4* depth, global const float4* rate,
-                             global const float4* columns, global const vitrail_MaterialDesc* materials, const vitrail_LightDesc light, global const float4* map, uint lit,
-                             global float4* samples, ulong count, uint perItem) {
+                             global const float4* columns, global const vitrail_MaterialDesc* materials, const vitrail_LightDesc light,
+                             global const float4* map, uint lit, global float4* samples, ulong count, uint perItem) {
     const float width = 2.0f * camera.up.w / (float)camera.height;
     const float3 cell = (float3)(2.0f * grid.extent.x / (float)grid.size.x, 2.0f * grid.extent.y / (float)grid.size.y,
                                  (grid.extent.w - grid.extent.z) / (float)grid.size.z);
@@ -151,7 +151,8 @@ kernel void shadow_map_shade(const vitrail_GridDesc grid, const vitrail_GridDesc
             const float cx = x0 + (float)(k & 1), cy = y0 + (float)(k >> 1);
             const float weight = (1.0f - fabs(x - cx)) * (1.0f - fabs(y - cy));
             const float at = clamp(z - (across.x * (cx - x) + across.y * (cy - y)) * steep - slack, -1.0f, (float)grid.size.z);
-            through += shadow_map_column_transmittance(&grid, words, bricks, rank, depth, rate, columns, (int)cx, (int)cy, (int)floor(at) + own) * weight;
+            through += weight * shadow_map_column_transmittance(&grid, words, bricks, rank, depth, rate, columns, (int)cx, (int)cy,
+                                                                (int)floor(at) + own);
         }
         if (lit == 0u) {
             samples[pixel] = (float4)(through, 1.0f);

@@ -35,7 +35,8 @@ void addStop(Scene& scene, float height, float half, float x, float z) {
     Mesh& mesh = scene.mesh;
     mesh.materials.resize(mesh.triangleCount(), 0);
     const float most = 1.5f;
-    const float boxes[4][4] = {{-most, x - half, -most, most}, {x + half, most, -most, most}, {x - half, x + half, -most, z - half}, {x - half, x + half, z + half, most}};
+    const float boxes[4][4] = {
+        {-most, x - half, -most, most}, {x + half, most, -most, most}, {x - half, x + half, -most, z - half}, {x - half, x + half, z + half, most}};
     for (const auto& [x0, x1, z0, z1] : boxes) {
         const auto first = static_cast<std::uint32_t>(mesh.positions.size());
         for (const Float3& p : {Float3(x0, height, z0), Float3(x1, height, z0), Float3(x1, height, z1), Float3(x0, height, z1)}) {
@@ -90,7 +91,8 @@ TEST(Caustics, EveryPartOfEveryPhotonIsCounted) {
         EXPECT_GT(c.reflected, c.emitted / 20);
         // The map holds what landed: float sums of 64^2 texels of 24 bits.
         double energy = 0;
-        for (const Float4& texel : map.read(queue())) energy += (texel.x / map.power.x + texel.y / map.power.y + texel.z / map.power.z) * map.edge * map.edge;
+        for (const Float4& texel : map.read(queue()))
+            energy += (texel.x / map.power.x + texel.y / map.power.y + texel.z / map.power.z) * map.edge * map.edge;
         EXPECT_NEAR(energy * kPhotonParts / static_cast<double>(c.landed), 1.0, 1e-5);
         const CausticMap again = caustics(queue(), scene, {.method = method, .photons = 160, .texels = 64});
         EXPECT_EQ(again.read(queue()), map.read(queue()));
@@ -104,7 +106,8 @@ TEST(Caustics, ASlabShiftsAndDoesNotFocus) {
     Scene scene = sceneOf(box, static_cast<float>(index));
     addStop(scene, 0.5f, static_cast<float>(hole), 0.3f, 0.0f);
     scene.light.toLight = Float3(0.6f, 0.8f, 0.0f);
-    const CausticMap map = caustics(queue(), scene, {.method = Exact{.resolution = 32}, .ground = {.height = -1.0f, .automatic = false}, .photons = 512, .texels = 512});
+    const CausticMap map =
+        caustics(queue(), scene, {.method = Exact{.resolution = 32}, .ground = {.height = -1.0f, .automatic = false}, .photons = 512, .texels = 512});
     const Spot spot = spotOf(map);
     // From (0.3, 0.5) down to -1: 1.5 tan, less what the slab bends towards its normal.
     const double inside = sine / index, shift = (1.5 - thickness) * sine / cosine + thickness * inside / std::sqrt(1 - inside * inside);
@@ -130,7 +133,11 @@ TEST(Caustics, ABallFocusesAtItsFocalLength) {
     const double radius = (scene.mesh.bounds().high.x - scene.mesh.bounds().low.x) / 2, focal = index * radius / (2 * (index - 1));
     addStop(scene, static_cast<float>(radius) + 0.1f, static_cast<float>(hole * radius), 0.0f, 0.0f);
     for (const double share : {0.8, 1.0, 1.2, 1.6}) {
-        const CausticMap map = caustics(queue(), scene, {.method = Exact{.resolution = 64}, .ground = {.height = static_cast<float>(-share * focal), .automatic = false}, .photons = 1024, .texels = 1024});
+        const CausticMap map = caustics(queue(), scene,
+                                        {.method = Exact{.resolution = 64},
+                                         .ground = {.height = static_cast<float>(-share * focal), .automatic = false},
+                                         .photons = 512,
+                                         .texels = 1024});
         const Spot spot = spotOf(map);
         const double beam = hole * radius / std::sqrt(3.0), expected = beam * std::abs(1 - share);
         // Paraxial: off by spherical aberration, below a twentieth of the beam at a tenth of the radius (its square times 3 or so), and by a
@@ -168,12 +175,13 @@ TEST(Caustics, AreThoseOfRays) {
         for (const GlassMethod& method : {GlassMethod(Planes{.resolution = 96}), GlassMethod(Exact{.resolution = 48})}) {
             const CausticMap map = caustics(queue(), scene, {.method = method, .ground = ground, .photons = 400, .texels = 256});
             const reference::PhotonSums truth = reference::caustics(scene, map.light, ground.height, map.low, map.edge, map.texels);
-            // Rates, half as much again as was measured (0.008 and 0.057; 0.00009 and 0.00016): at the folds of a caustic a photon off by a texel counts
-            // twice, and edges between planes send more of them astray on the thinner knot.
+            // Rates, half as much again as was measured (0.008 and 0.057; 0.00009 and 0.00016): at the folds of a caustic a photon off by a texel
+            // counts twice, and edges between planes send more of them astray on the thinner knot.
             const bool exact = std::holds_alternative<Exact>(method), torus = std::string(shape) == "torus";
             EXPECT_LE(apart(map, truth), exact ? 5e-4 : torus ? 0.012 : 0.085) << shape;
             const auto near = [&](std::uint64_t parts, const Double3& share) {
-                EXPECT_NEAR(static_cast<double>(parts) / static_cast<double>(map.report.counts.emitted), (share.x + share.y + share.z) / (3 * truth.emitted.y), 2e-3)
+                EXPECT_NEAR(static_cast<double>(parts) / static_cast<double>(map.report.counts.emitted),
+                            (share.x + share.y + share.z) / (3 * truth.emitted.y), 2e-3)
                     << shape;
             };
             EXPECT_NEAR(static_cast<double>(map.report.photons), truth.emitted.y, 2);  // on the outline

@@ -106,7 +106,8 @@ TEST(ShadowMap, AFlatSurfaceDoesNotShadeItself) {
     for (const float y : {1.0f, 0.3f, 0.02f}) {
         scene.light.toLight = Float3(1.0f, y, 0.4f);
         Camera camera = Camera::around(scene.mesh.bounds(), 30, 40, 64, 64);
-        const Image image = shade(queue(), scene, camera, Shadow{.method = Counted{.resolution = 96, .slices = 128}, .ground = {.visible = false}, .samples = 1});
+        const Image image =
+            shade(queue(), scene, camera, Shadow{.method = Counted{.resolution = 96, .slices = 128}, .ground = {.visible = false}, .samples = 1});
         std::size_t seen = 0;
         for (const Float4& p : image.picture().pixels) {
             if (p.w < 1) continue;
@@ -133,7 +134,7 @@ TEST(ShadowMap, OfATreeIsNearTheRays) {
     EXPECT_LE(counted.mean, 0.85 * uniform);  // of its best absorption
 }
 
-// Rate (issue of the paper's film): from frame to frame at most 1.5 times what the rays change.
+// Rate: from frame to frame at most 1.5 times what the rays change; 1.15 and 0.95 were measured.
 TEST(ShadowMap, DoesNotFlickerWhileLightOrCameraMoves) {
     for (const bool light : {true, false}) {
         Scene scene = treeScene();
@@ -141,7 +142,8 @@ TEST(ShadowMap, DoesNotFlickerWhileLightOrCameraMoves) {
         double change = 0, truthChange = 0;
         for (int frame = 0; frame < 5; ++frame) {
             const float turn = 0.02f * static_cast<float>(frame);
-            if (light) scene.light.toLight = Float3(0.5f * std::cos(turn) - 0.3f * std::sin(turn), 1.0f, 0.5f * std::sin(turn) + 0.3f * std::cos(turn));
+            if (light)
+                scene.light.toLight = Float3(0.5f * std::cos(turn) - 0.3f * std::sin(turn), 1.0f, 0.5f * std::sin(turn) + 0.3f * std::cos(turn));
             const Camera camera = Camera::around(scene.mesh.bounds(), light ? 30.0f : 30.0f + glm::degrees(turn), 35, 96, 96);
             Picture picture = shadowOf(scene, camera, Counted{}).picture(), truth = reference::shadow(scene, camera, groundOf(scene), 2);
             if (frame != 0) {
@@ -153,7 +155,6 @@ TEST(ShadowMap, DoesNotFlickerWhileLightOrCameraMoves) {
         }
         EXPECT_GT(truthChange, 0.01);
         EXPECT_LE(change, 1.5 * truthChange) << (light ? "light" : "camera");
-        std::printf("%g\n", change / truthChange);
     }
 }
 

@@ -36,22 +36,22 @@ struct CausticReport : CallReport {
 
 /// Irradiance on a horizontal square by the photons that went through glass; what reaches the ground past everything is not in it.
 struct CausticMap {
-    Camera light;                ///< orthographic, one photon a pixel
-    Float2 low{0.0f};            ///< x and z of the corner of texel (0, 0), world
-    float edge = 0;              ///< of a texel, world units
-    std::uint32_t texels = 0;    ///< along x and z each
-    Float3 power{0.0f};          ///< of a photon: irradiance across the light times the area of its pixel
-    Buffer<float> irradiance;    ///< RGB and 0, row after row along z
+    Camera light;              ///< orthographic, one photon a pixel
+    Float2 low{0.0f};          ///< x and z of the corner of texel (0, 0), world
+    float edge = 0;            ///< of a texel, world units
+    std::uint32_t texels = 0;  ///< along x and z each
+    Float3 power{0.0f};        ///< of a photon: irradiance across the light times the area of its pixel
+    Buffer<float> irradiance;  ///< RGB and 0, row after row along z
     CausticReport report;
 
     std::vector<Float4> read(Queue& queue) const;
 };
 
-/// The square lies on the ground under the light's image of the scene, two and a half diagonals of its box wide. A photon is refracted by Snell's law, totally
-/// reflected, weakened by 1 - F at each refraction and by Beer-Lambert, as shade(..., Glass) has them, until it meets the ground or anything
-/// opaque; the one that is reflected at a surface it also goes through is not followed. Sums are integers: the same bits for any number of
-/// threads, and every part of a photon is counted. Waits. Memory: as glassRays() of photons x photons pixels, 24 bytes a texel while it
-/// runs, 16 after. Throws Error (badInput, badOption, outOfMemory).
+/// The square lies on the ground under the light's image of the scene, two and a half diagonals of its box wide. A photon is refracted by
+/// Snell's law, totally reflected, weakened by 1 - F at each refraction and by Beer-Lambert until it meets the ground or anything opaque; the one
+/// that is reflected at a surface it also goes through is not followed. Sums are integers: the same bits for any number of threads, and every
+/// part of a photon is counted. Waits. Memory: as glassRays() of photons x photons pixels, 24 bytes a texel while it runs, 16 after.
+/// Throws Error (badInput, badOption, outOfMemory).
 CausticMap caustics(Queue& queue, const Scene& scene, const Caustics& effect);
 
 }  // namespace v0

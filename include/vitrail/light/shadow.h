@@ -51,11 +51,11 @@ ShadowMethod shadowByName(std::string_view name, std::span<const std::string> op
 ///
 /// Planes, Exact: the product of Beer-Lambert over the glass in between and of 1 - F at each crossing, 0 behind opaque voxels.
 ///
-/// Counted, Uniform: exp of minus the sum of the absorptions of the voxels between light and point (eq. 1), without Fresnel's reflection, between
-/// the four lines of the light next to the point. The sum leaves out the slice in which the point's own surface lies, where eq. 1 has it: a
-/// surface does not shade itself, nor what lies within the same slice; the ground, which is no voxel, has it. A voxel has one material, the lowest of its triangles'; what no line
-/// of the light meets casts no shadow. Bodies, closed and of transmission above 0.5, are measured in whole slices. Opaque layers let 1e-7
-/// through.
+/// Counted, Uniform: exp of minus the sum of the absorptions of the voxels between light and point (eq. 1), without Fresnel's reflection,
+/// between the four lines of the light next to the point. The sum leaves out the slice in which the point's own surface lies, where eq. 1
+/// has it: a surface does not shade itself, nor what lies within the same slice; the ground, which is no voxel, has it. A voxel has one
+/// material, the lowest of its triangles'; what no line of the light meets casts no shadow. Bodies, closed and of transmission above 0.5, are
+/// measured in whole slices. Opaque layers let 1e-7 through.
 struct Shadow {
     ShadowMethod method{};
     Ground ground{};
