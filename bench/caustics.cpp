@@ -57,6 +57,8 @@ double wrong(Queue& queue, const CausticMap& map, const reference::PhotonSums& t
     return sum / truth.landed.y;
 }
 
+double mean(const Double3& rgb) { return (rgb.x + rgb.y + rgb.z) / 3; }
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -91,7 +93,7 @@ int main(int argc, char** argv) {
                                          state.counters["referenceMs"] = truth->second.milliseconds;
                                          state.counters["photons"] = static_cast<double>(report.photons);
                                          state.counters["landed"] = share(report.counts.landed);
-                                         state.counters["landedTruth"] = glm::dot(truth->second.sums.landed, Double3(1.0)) / glm::dot(truth->second.sums.emitted, Double3(1.0));
+                                         state.counters["landedTruth"] = mean(truth->second.sums.landed) / mean(truth->second.sums.emitted);
                                          state.counters["absorbed"] = share(report.counts.absorbed);
                                          state.counters["reflected"] = share(report.counts.reflected);
                                          state.counters["missed"] = share(report.counts.missed);
