@@ -1,4 +1,4 @@
-// cli/render.cpp: a picture of a scene: its glass, its transmittance shadow, or the voxels themselves.
+// cli/render.cpp: a picture of a scene: its glass with or without caustics, its transmittance shadow, or the voxels themselves.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -7,6 +7,7 @@
 #include <vitrail/io/image.h>
 #include <vitrail/io/load.h>
 #include <vitrail/light/boxes.h>
+#include <vitrail/light/caustics.h>
 #include <vitrail/light/glass.h>
 #include <vitrail/light/shadow.h>
 #ifdef VITRAIL_HAS_REFERENCE
@@ -26,8 +27,8 @@ struct Options {
                 environment, size = "768x768";
     std::vector<std::string> outputs;
     float yaw = 30, pitch = 20, indexOfRefraction = 0, exposure = 0, crease = 60;
-    std::uint32_t samples = 2, voxelResolution = 64;
-    bool noGround = false, json = false;
+    std::uint32_t samples = 2, voxelResolution = 64, photons = Caustics{}.photons, texels = Caustics{}.texels;
+    bool noGround = false, lit = false, json = false;
     MethodOptions methodOptions;
     DeviceOptions device;
 };
@@ -85,15 +86,21 @@ int runRender(const Options& options) {
         if (options.effect == "voxels") return renderVoxels(queue, options, scene.mesh, camera);
         const Ground ground{.visible = !options.noGround};
         if (options.effect == "shadow")
-            return shade(queue, scene, camera, Shadow{.method = glassMethod(options.method, options.methodOptions), .ground = ground, .samples = options.samples});
-        return shade(queue, scene, camera, Glass{.method = glassMethod(options.method, options.methodOptions), .ground = ground, .samples = options.samples});
+            return shade(queue, scene, camera,
+                         Shadow{.method = shadowMethod(options.method, options.methodOptions), .ground = ground, .samples = options.samples, .lit = options.lit});
+        Glass glass{.method = glassMethod(options.method, options.methodOptions), .ground = ground, .samples = options.samples};
+        if (options.effect != "caustics") return shade(queue, scene, camera, glass);
+        const CausticMap map = caustics(queue, scene, {.method = glass.method, .ground = ground, .photons = options.photons, .texels = options.texels});
+        glass.caustics = &map;
+        return shade(queue, scene, camera, glass);
     };
     const Image image = render();
     const Picture& picture = image.picture();
     const ImageReport& report = image.report();
     stopIfInterrupted();
-    const float exposure = options.exposure > 0 ? options.exposure : options.effect == "glass" ? automaticExposure(picture) : 1.0f;
-    for (const std::string& output : options.outputs) savePicture(output, picture, exposure, options.effect == "glass" ? ToneCurve::filmic : ToneCurve::none);
+    const bool radiance = options.effect == "glass" || options.effect == "caustics" || (options.effect == "shadow" && options.lit);  // else shares or colours, shown as they are
+    const float exposure = options.exposure > 0 ? options.exposure : radiance ? automaticExposure(picture) : 1.0f;
+    for (const std::string& output : options.outputs) savePicture(output, picture, exposure, radiance ? ToneCurve::filmic : ToneCurve::none);
     bar.clear();
     if (options.json) {
         Json out = document("render");
@@ -120,16 +127,17 @@ int runRender(const Options& options) {
 }  // namespace
 
 void addRender(CLI::App& app, Run& run) {
-    CLI::App* verb = app.add_subcommand("render", "a picture: glass, shadow, or the voxels themselves");
+    CLI::App* verb = app.add_subcommand("render", "a picture: glass, caustics, shadow, or the voxels themselves");
     auto options = std::make_shared<Options>();
     verb->add_option("SCENE", options->scene, "a mesh (.ply, .stl, .off, .obj), glTF (.gltf, .glb) or a JSON scene")->required();
-    verb->add_option("--effect", options->effect, "glass: refraction, with the transparent shadow on a ground; shadow: the light's transmittance alone; voxels")
-        ->check(CLI::IsMember({"glass", "shadow", "voxels"}))
+    verb->add_option("--effect", options->effect, "glass: refraction, with the transparent shadow on a ground; caustics: the same with the light that glass gathers there; shadow: the "
+                     "light's transmittance alone; voxels")
+        ->check(CLI::IsMember({"glass", "caustics", "shadow", "voxels"}))
         ->capture_default_str();
     verb->add_option("-o,--output", options->outputs, "OUT.png (tone-mapped) or OUT.exr (linear); may be given more than once")
         ->required()
         ->type_name("OUT");
-    verb->add_option("--method", options->method, "of glass and shadow: " + methodNames(Family::glass))->capture_default_str()->type_name("NAME");
+    verb->add_option("--method", options->method, "of glass, caustics and shadow: " + methodNames(Family::glass) + "; of shadow: " + methodNames(Family::shadow))->capture_default_str()->type_name("NAME");
     verb->add_option("--environment", options->environment, "latitude-longitude .hdr or .exr; its brightest part becomes the light")->type_name("FILE");
     verb->add_option("--ior", options->indexOfRefraction, "index of refraction of all materials, 1 to 3; else the scene's")->check(CLI::Range(1.0, 3.0));
     verb->add_option("--size", options->size, "pixels")->capture_default_str()->type_name("WxH");
@@ -141,6 +149,13 @@ void addRender(CLI::App& app, Run& run) {
         ->check(CLI::Range(0.0, 180.0))
         ->capture_default_str();
     verb->add_flag("--no-ground", options->noGround, "no ground under the scene");
+    verb->add_option("--photons", options->photons, "of --effect caustics: along each side of the light's window")
+        ->check(CLI::Range(16, 8192))
+        ->capture_default_str();
+    verb->add_option("--texels", options->texels, "of --effect caustics: along each side of the map on the ground")
+        ->check(CLI::Range(16, 4096))
+        ->capture_default_str();
+    verb->add_flag("--lit", options->lit, "of --effect shadow with " + methodNames(Family::shadow) + ": the scene in this light, matt");
     verb->add_option("--colour", options->colour, "of --effect voxels: normal, count, or difference to the truth (red missing, blue extra)")
         ->check(CLI::IsMember({"normal", "count", "difference"}))
         ->capture_default_str();
@@ -149,6 +164,7 @@ void addRender(CLI::App& app, Run& run) {
     options->device.add(*verb);
     verb->add_flag("--json", options->json, "the report as JSON on standard output");
     options->methodOptions.add(*verb, Family::glass);
+    options->methodOptions.add(*verb, Family::shadow);
     verb->footer("vitrail render bunny.ply --effect glass --environment sky.hdr -o bunny.png -o bunny.exr");
     verb->callback([options, &run] { run = [options] { return runRender(*options); }; });
 }

@@ -141,6 +141,11 @@ GlassMethod glassMethod(const std::string& name, const MethodOptions& options) {
     return glassByName(name, row != nullptr ? options.givenFor(*row) : std::vector<std::string>());
 }
 
+ShadowMethod shadowMethod(const std::string& name, const MethodOptions& options) {
+    const Method* row = findMethod(name);
+    return shadowByName(name, row != nullptr ? options.givenFor(*row) : std::vector<std::string>());
+}
+
 Mesh loadMesh(const std::string& file) {
     Mesh mesh = load(file);
     for (const std::string& repair : mesh.repairs) note(file + ": " + repair);

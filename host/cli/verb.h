@@ -12,6 +12,7 @@
 #include <vitrail/core/queue.h>
 #include <vitrail/grid/grid.h>
 #include <vitrail/light/glass.h>
+#include <vitrail/light/shadow.h>
 #include <vitrail/scene/mesh.h>
 #include <vitrail/scene/scene.h>
 #include <vitrail/voxelize/voxelize.h>
@@ -80,6 +81,8 @@ void parseSize(const std::string& text, std::uint32_t& width, std::uint32_t& hei
 
 /// The glass method called `name` with the options given. Throws Error (badOption) that lists what there is.
 GlassMethod glassMethod(const std::string& name, const MethodOptions& options);
+/// Likewise of shadows.
+ShadowMethod shadowMethod(const std::string& name, const MethodOptions& options);
 
 /// Reads a mesh, and says on standard error what its reader mended.
 Mesh loadMesh(const std::string& file);

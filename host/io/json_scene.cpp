@@ -206,31 +206,43 @@ private:
     }
 
     void readMesh(const Json& json, const std::string& place) {
-        const Members from(json, source_.name, place, {"file", "shape", "parameters", "material", "transform"});
+        const Members from(json, source_.name, place, {"file", "shape", "parameters", "material", "materials", "transform"});
         if (from.has("file") == from.has("shape")) from.fail("either \"file\" or \"shape\" was expected", place);
         if (from.has("file") && from.has("parameters")) {
             from.fail("parameters belong to a shape", from.placeOf("parameters"), "\"transform\" to place a file");
         }
-        std::size_t material = 0;
-        if (from.has("material")) {
-            const auto found = named_.find(from.text("material"));
-            if (found == named_.end()) {
-                std::string known;
-                for (const auto& [name, index] : named_) known += (known.empty() ? "" : ", ") + name;
-                from.fail("there is no material " + inQuotes(from.text("material")), from.placeOf("material"),
-                          known.empty() ? "a list \"materials\" with it" : known);
-            }
-            material = found->second;
-        }
+        if (from.has("material") && from.has("materials")) from.fail("either \"material\" or \"materials\" was expected", place);
+        std::uint32_t material = 0;
+        if (from.has("material")) material = materialOf(from, from.text("material"), from.placeOf("material"));
+        std::vector<std::uint32_t> materials;
+        from.forEach("materials", [&](const Json& one, const std::string& at) {
+            if (!one.is_string()) from.fail("the name of a material was expected", at);
+            materials.push_back(materialOf(from, one.get<std::string>(), at));
+        });
         Scene part = from.has("file") ? loadPart(from) : shapePart(from);
         transform(from, part.mesh);
         if (from.has("material")) {
-            part.mesh.materials.assign(part.mesh.triangleCount(), static_cast<std::uint32_t>(material));
+            part.mesh.materials.assign(part.mesh.triangleCount(), material);
+        } else if (from.has("materials")) {
+            if (part.mesh.materials.empty()) part.mesh.materials.assign(part.mesh.triangleCount(), 0);
+            for (std::uint32_t& id : part.mesh.materials) {
+                if (id >= materials.size())
+                    from.fail("a triangle has material number " + std::to_string(id) + " of " + std::to_string(materials.size()), from.placeOf("materials"));
+                id = materials[id];
+            }
         } else {
             adoptMaterials(part);
         }
         for (const std::string& warning : part.warnings) scene_.warnings.push_back(place + ": " + warning);
         append(std::move(part.mesh));
+    }
+
+    std::uint32_t materialOf(const Members& from, const std::string& name, const std::string& place) const {
+        const auto found = named_.find(name);
+        if (found != named_.end()) return static_cast<std::uint32_t>(found->second);
+        std::string known;
+        for (const auto& [other, index] : named_) known += (known.empty() ? "" : ", ") + other;
+        from.fail("there is no material " + inQuotes(name), place, known.empty() ? "a list \"materials\" with it" : known);
     }
 
     Scene loadPart(const Members& from) const {

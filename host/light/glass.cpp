@@ -1,3 +1,4 @@
+#include <vitrail/light/caustics.h>
 #include <vitrail/light/glass.h>
 
 #include <vitrail/methods.h>
@@ -33,13 +34,13 @@ Image shade(Queue& queue, const Scene& scene, const Camera& camera, const Glass&
         queue, scene, camera, effect.method, effect.samples, "glass",
         [&](detail::Call& call, const detail::MarchVolume& volume, std::uint64_t samples, const Buffer<float>& seen, const Buffer<std::uint32_t>& status) {
             const vitrail_LightDesc light = detail::describeLight(scene, effect.ground, scene.mesh.bounds());
-            const std::vector<Float4>& texels = scene.environment.map.pixels;
-            Buffer<float> map;
-            if (!texels.empty()) {
-                map = queue.workspace().take<float>(4 * texels.size(), "environment map");
-                call.upload(map, &texels[0].x, 4 * texels.size());
-            }
-            detail::launchMarch(call, "glass", "glass_shade", volume, samples, light, map, status, seen);
+            const Buffer<float> map = detail::uploadEnvironment(call, scene);
+            const Buffer<float> none;
+            const CausticMap* caustic = effect.caustics;
+            const vitrail_float4 place = caustic != nullptr ? vitrail_float4{caustic->low.x, caustic->low.y, caustic->edge, static_cast<float>(caustic->texels)}
+                                                            : vitrail_float4{};
+            detail::launchMarch(call, "glass", "glass_shade", volume, samples, light, map, caustic != nullptr ? caustic->irradiance : none, place, status,
+                                seen);
         });
 }
 

@@ -24,8 +24,7 @@ std::string_view nameOf(const GlassMethod& method) {
     return std::visit([](const auto& one) { return one.name; }, method);
 }
 
-void checkGlass(const Scene& scene, const GlassMethod& method) {
-    std::visit([](const auto& one) { checkOptions(one); }, method);
+void checkMaterials(const Scene& scene) {
     if (scene.materials.empty()) throw Error(ErrorCode::badInput, {"the scene has no materials", "", "", "one material, such as defaultGlass(bounds)"});
     for (const std::uint32_t material : scene.mesh.materials)
         if (material >= scene.materials.size())
@@ -33,15 +32,25 @@ void checkGlass(const Scene& scene, const GlassMethod& method) {
                                               "materials that index the scene's list"});
 }
 
+void checkGlass(const Scene& scene, const GlassMethod& method) {
+    std::visit([](const auto& one) { checkOptions(one); }, method);
+    checkMaterials(scene);
+}
+
+Buffer<vitrail_MaterialDesc> uploadMaterials(Call& call, const Scene& scene) {
+    std::vector<vitrail_MaterialDesc> table;
+    for (const Material& m : scene.materials) table.push_back({with(m.baseColour, m.transmission), with(m.absorption(), m.indexOfRefraction)});
+    Buffer<vitrail_MaterialDesc> materials = call.queue().workspace().take<vitrail_MaterialDesc>(table.size(), "materials");
+    call.upload(materials, table.data(), table.size());
+    return materials;
+}
+
 MarchVolume marchVolume(Call& call, const Scene& scene, const Camera& camera, const GlassMethod& method) {
     Queue& queue = call.queue();
     const Grid grid = Grid::fit(scene.mesh.bounds(), static_cast<std::uint32_t>(resolutionOf(method)));
     DeviceMesh mesh(queue, scene.mesh.view());
     GBuffer gbuffer = rasterize(queue, mesh, camera);
-    std::vector<vitrail_MaterialDesc> table;
-    for (const Material& m : scene.materials) table.push_back({with(m.baseColour, m.transmission), with(m.absorption(), m.indexOfRefraction)});
-    Buffer<vitrail_MaterialDesc> materials = queue.workspace().take<vitrail_MaterialDesc>(table.size(), "materials");
-    call.upload(materials, table.data(), table.size());
+    Buffer<vitrail_MaterialDesc> materials = uploadMaterials(call, scene);
     const Uint3 size = grid.size();
     const auto bound = static_cast<std::int32_t>(4 * (size.x + size.y + size.z));
     Call voxelizing(queue, "voxelizing " + std::to_string(mesh.triangleCount()) + " triangles of glass");

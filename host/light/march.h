@@ -31,8 +31,12 @@ struct MarchVolume {
 
 std::string_view nameOf(const GlassMethod& method);
 
-/// Throws Error (badOption, badInput) before anything is made.
+/// Throws Error (badInput): a triangle's material is not in the scene's list.
+void checkMaterials(const Scene& scene);
+/// The same, and Error (badOption), before anything is made.
 void checkGlass(const Scene& scene, const GlassMethod& method);
+
+Buffer<vitrail_MaterialDesc> uploadMaterials(Call& call, const Scene& scene);
 
 MarchVolume marchVolume(Call& call, const Scene& scene, const Camera& camera, const GlassMethod& method);
 

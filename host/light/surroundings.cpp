@@ -57,6 +57,15 @@ vitrail_LightDesc describeLight(const Scene& scene, const Ground& ground, const 
     return out;
 }
 
+Buffer<float> uploadEnvironment(Call& call, const Scene& scene) {
+    const std::vector<Float4>& texels = scene.environment.map.pixels;
+    Buffer<float> map;
+    if (texels.empty()) return map;
+    map = call.queue().workspace().take<float>(4 * texels.size(), "environment map");
+    call.upload(map, &texels[0].x, 4 * texels.size());
+    return map;
+}
+
 }  // namespace detail
 
 DirectionalLight sunOf(const Environment& environment) {

@@ -1,74 +1,20 @@
 #include <vitrail/reference/glass.h>
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <limits>
-#include <memory>
 #include <string>
 #include <thread>
-#include <type_traits>
 
 #include <vitrail/core/error.h>
+
+#include "reference/triangles.h"
 
 namespace vitrail {
 inline namespace v0 {
 namespace reference {
 
 namespace {
-
-constexpr std::uint32_t kNone = 0xffffffffu;
-
-Double3 vertex(const Mesh& mesh, std::uint32_t triangle, int corner) { return Double3(mesh.positions[mesh.indices[3 * triangle + static_cast<unsigned>(corner)]]); }
-
-class Triangles {
-public:
-    explicit Triangles(const Mesh& mesh) : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_.get())) {
-        const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-        auto* corners = static_cast<float*>(
-            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.positions.size()));
-        for (const Float3& p : mesh.positions)
-            for (int axis = 0; axis < 3; ++axis) *corners++ = p[axis];
-        auto* indices = static_cast<unsigned*>(
-            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), mesh.triangleCount()));
-        std::copy(mesh.indices.begin(), mesh.indices.end(), indices);
-        rtcCommitGeometry(geometry);
-        rtcAttachGeometry(scene_.get(), geometry);
-        rtcReleaseGeometry(geometry);
-        rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
-        rtcCommitScene(scene_.get());
-    }
-
-    /// The nearest triangle along the ray past `least`, or kNone.
-    std::uint32_t next(const Double3& origin, const Double3& direction, double least) const {
-        const Float3 o(origin), d(direction);
-        RTCRayHit ray{};
-        ray.ray = {o.x, o.y, o.z, static_cast<float>(least), d.x, d.y, d.z, 0, std::numeric_limits<float>::infinity(), ~0u, 0, 0};
-        ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-#if RTC_VERSION_MAJOR >= 4
-        rtcIntersect1(scene_.get(), &ray);
-#else
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        rtcIntersect1(scene_.get(), &context, &ray);
-#endif
-        return ray.hit.geomID == RTC_INVALID_GEOMETRY_ID ? kNone : ray.hit.primID;
-    }
-
-private:
-    struct Release {
-        void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-        void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-    };
-    std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release> device_;
-    std::unique_ptr<std::remove_pointer_t<RTCScene>, Release> scene_;
-};
 
 class Tracer {
 public:
@@ -107,7 +53,7 @@ public:
             }
             end.fate = VITRAIL_RAY_LEFT;
             if (!inside) through *= Double3(material.baseColour);
-            const Double3 shading = normalAt(t, position - a, u, w, across, geometric);
+            const Double3 shading = shadingNormal(scene_.mesh, t, position - a, u, w, across, geometric);
             double facing[3], out[3];
             vitrail_facing(&direction.x, &shading.x, &geometric.x, facing);
             const double index = material.indexOfRefraction;
@@ -125,17 +71,6 @@ public:
     }
 
 private:
-    Double3 normalAt(std::uint32_t t, const Double3& r, const Double3& u, const Double3& w, const Double3& across, const Double3& geometric) const {
-        const std::vector<Float3>& normals = scene_.mesh.normals;
-        if (normals.empty()) return geometric;
-        const double square = glm::dot(across, across), b = std::clamp(glm::dot(glm::cross(r, w), across) / square, 0.0, 1.0),
-                     c = std::clamp(glm::dot(glm::cross(u, r), across) / square, 0.0, 1.0);
-        const auto at = [&](unsigned k) { return Double3(normals[scene_.mesh.indices[3 * t + k]]); };
-        const Double3 n = at(0) * (1 - b - c) + at(1) * b + at(2) * c;
-        const double length = glm::length(n);
-        return length > 0 ? n / length : geometric;
-    }
-
     const Scene& scene_;
     Triangles triangles_;
     double least_;

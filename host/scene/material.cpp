@@ -18,5 +18,12 @@ Float3 Material::absorption() const {
     return sigma;
 }
 
+Float3 Material::layerTransmittance() const {
+    float covered = 1.0f;
+    if (alphaMode == AlphaMode::blend) covered = std::clamp(alpha, 0.0f, 1.0f);
+    if (alphaMode == AlphaMode::mask) covered = alpha >= alphaCutoff ? 1.0f : 0.0f;
+    return Float3(1.0f - covered) + glm::clamp(baseColour, 0.0f, 1.0f) * (covered * transmission);
+}
+
 }  // namespace v0
 }  // namespace vitrail

@@ -84,6 +84,16 @@ inline constexpr Method kMethods[] = {
     {"exact", Family::glass, "Chang et al. 2013, section 5.2, with the triangles themselves", Guarantee::exact,
      "Every crossing with the triangles of the voxel: as rays through the mesh, up to rounding, at any resolution.", false, false, Role::product,
      {MethodOption{"resolution", 128, 8, 2048, "voxels", "voxels along the longest axis"}, kNoOption, kNoOption}},
+    {"counted", Family::shadow, "Chang et al. 2013, section 4", Guarantee::none,
+     "Transparent shadow map: triangles in a voxel times the absorption of its material, bodies by Beer-Lambert; on the lines of the light "
+     "as rays, between them by the four nearest.",
+     false, false, Role::product,
+     {MethodOption{"resolution", 512, 8, 4096, "columns", "columns along the longer side of the light's window"},
+      MethodOption{"slices", 256, 1, 4096, "slices", "slices along the light"}, kNoOption}},
+    {"uniform", Family::shadow, "Eisemann & Decoret 2006, section 3.1; Chang et al. 2013, Fig. 8b", Guarantee::none,
+     "The map of counted with one absorption for all voxels: a trunk as light as leaves.", false, false, Role::baseline,
+     {MethodOption{"resolution", 512, 8, 4096, "columns", "as for counted"}, MethodOption{"slices", 256, 1, 4096, "slices", "as for counted"},
+      MethodOption{"absorption", 0.5, 0, 100, "1", "of a voxel with a triangle"}}},
 };
 
 constexpr std::span<const Method> methods() { return kMethods; }

@@ -13,12 +13,14 @@
 #include <vitrail/grid/camera.h>
 #include <vitrail/grid/grid.h>
 #include <vitrail/light/boxes.h>
+#include <vitrail/light/caustics.h>
 #include <vitrail/light/glass.h>
 #include <vitrail/light/shadow.h>
 #include <vitrail/methods.h>
 #include <vitrail/scene/mesh.h>
 #include <vitrail/scene/scene.h>
 #include <vitrail/scene/shapes.h>
+#include <vitrail/metrics/shadow.h>
 #include <vitrail/metrics/voxels.h>
 #include <vitrail/metrics/watertight.h>
 #include <vitrail/volume/voxels.h>

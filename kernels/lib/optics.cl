@@ -30,7 +30,7 @@ static inline bool optics_cross(float3* d, float3 facing, float3 flat, float rat
 static inline float3 optics_absorb(const vitrail_MaterialDesc* m, float length) { return exp(-xyz(m->absorption) * length); }
 
 // Transmittance from a point straight to the light: Beer-Lambert inside, 1 - F at each crossing, 0 behind opaque voxels.
-static float3 march_transmittance(const Volume* volume, float3 p, float3 toLight, bool inside, uint material) {
+static __attribute__((unused)) float3 march_transmittance(const Volume* volume, float3 p, float3 toLight, bool inside, uint material) {
     float3 through = (float3)(1.0f);
     March march = {inside, NO_TRIANGLE, 0.02f, 0};
     for (int event = 0; event < VITRAIL_MOST_EVENTS; ++event) {

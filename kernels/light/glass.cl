@@ -16,7 +16,8 @@ typedef struct {
     bool diffuse;
 } End;
 
-static float3 glass_light(const Volume* volume, const vitrail_LightDesc* light, global const float4* map, End end, float width) {
+static float3 glass_light(const Volume* volume, const vitrail_LightDesc* light, global const float4* map, global const float4* caustic,
+                          float4 place, End end, float width) {
     float3 seen = (float3)(0.0f), weight = end.weight, position = end.position, normal = end.direction;
     if (!end.diffuse) {
         const float3 o = to_world(volume->grid, end.position), d = end.direction;
@@ -35,9 +36,13 @@ static float3 glass_light(const Volume* volume, const vitrail_LightDesc* light, 
     // Ambient light, and the light's as far as it gets through.
     float3 arriving = xyz(light->ambient) * (0.65f + 0.35f * normal.y);
     const float facing = dot(normal, xyz(light->toLight));
-    if (facing > 0.0f)
-        arriving += xyz(light->irradiance) * (facing * 0.31830989f) *
-                    march_transmittance(volume, position + normal * 0.75f, xyz(light->toLight), false, 0u);
+    const bool gathered = caustic && !end.diffuse && normal.y > 0.0f;
+    if (gathered) arriving += surroundings_caustic(caustic, place, to_world(volume->grid, position)) * 0.31830989f;
+    if (facing > 0.0f) {
+        const float3 through = march_transmittance(volume, position + normal * 0.75f, xyz(light->toLight), false, 0u);
+        // Behind glass there are the photons alone; past everything nothing is taken from the light.
+        if (!gathered || through.x + through.y + through.z == 3.0f) arriving += xyz(light->irradiance) * (facing * 0.31830989f) * through;
+    }
     return seen + weight * arriving;
 }
 
@@ -102,8 +107,8 @@ static void glass_trace(const Volume* volume, float3 position, float3 normal, fl
 }
 
 // One sample a pixel of the G-buffer: the picture.
-kernel void glass_shade(MARCH_PARAMETERS, const vitrail_LightDesc light, global const float4* map, global uint* status,
-                        global float4* samples, ulong first, ulong count, uint perItem) {
+kernel void glass_shade(MARCH_PARAMETERS, const vitrail_LightDesc light, global const float4* map, global const float4* caustic,
+                        const float4 place, global uint* status, global float4* samples, ulong first, ulong count, uint perItem) {
     const Volume volume = MARCH_VOLUME;
     const float width = 2.0f * camera.up.w / (float)camera.height;  // of a pixel at distance 1; the ground's tiles are filtered by it
     FOR_RANGE(i, count, perItem) {
@@ -125,7 +130,7 @@ kernel void glass_shade(MARCH_PARAMETERS, const vitrail_LightDesc light, global 
         if (fate == VITRAIL_RAY_BOUNDED) atomic_inc(status + STATUS_BOUNDED);
         float3 seen = (float3)(0.0f);
         for (int k = 0; k < 2; ++k)
-            if (ends[k].weight.x + ends[k].weight.y + ends[k].weight.z > 0.0f) seen += glass_light(&volume, &light, map, ends[k], width);
+            if (ends[k].weight.x + ends[k].weight.y + ends[k].weight.z > 0.0f) seen += glass_light(&volume, &light, map, caustic, place, ends[k], width);
         samples[pixel] = (float4)(seen, 1.0f);
     }
 }

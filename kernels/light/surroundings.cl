@@ -60,4 +60,15 @@ static inline float surroundings_albedo(const vitrail_LightDesc* light, float3 p
     return light->groundLight.x * (1.0f - share) + light->groundLight.y * share;
 }
 
+// Irradiance by photons at a point of the ground: between the four texels next to it (place: low corner x and z, a texel's edge, texels a
+// side), nothing outside.
+static inline float3 surroundings_caustic(global const float4* caustic, float4 place, float3 p) {
+    const float x = (p.x - place.x) / place.z - 0.5f, z = (p.z - place.y) / place.z - 0.5f;
+    if (!(x >= 0.0f && z >= 0.0f && x < place.w - 1.0f && z < place.w - 1.0f)) return (float3)(0.0f);
+    const size_t side = (size_t)place.w, at = (size_t)z * side + (size_t)x;
+    const float a = x - floor(x), b = z - floor(z);
+    return (xyz(caustic[at]) * (1.0f - a) + xyz(caustic[at + 1]) * a) * (1.0f - b) +
+           (xyz(caustic[at + side]) * (1.0f - a) + xyz(caustic[at + side + 1]) * a) * b;
+}
+
 #endif

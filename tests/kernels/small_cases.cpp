@@ -2,6 +2,7 @@
 // times slower than a device. Prints what ran; the numbers are tested elsewhere.
 #include <vitrail/core/error.h>
 #include <vitrail/light/boxes.h>
+#include <vitrail/light/caustics.h>
 #include <vitrail/light/glass.h>
 #include <vitrail/light/shadow.h>
 #include <vitrail/vitrail.h>
@@ -91,6 +92,11 @@ int main() {
         (void)shade(queue, scene, camera, Glass{.method = Planes{.resolution = 8}, .samples = 1}).picture();
         (void)glassRays(queue, scene, camera, Exact{.resolution = 8});
         (void)shade(queue, scene, camera, Shadow{.method = Planes{.resolution = 8}, .samples = 1}).picture();
+        (void)shade(queue, scene, camera, Shadow{.method = Counted{.resolution = 8, .slices = 40}, .samples = 1}).picture();
+        (void)shade(queue, scene, camera, Shadow{.method = Uniform{.resolution = 8, .slices = 8}, .samples = 1, .lit = true}).picture();
+        const CausticMap map = caustics(queue, scene, {.method = Planes{.resolution = 8}, .photons = 16, .texels = 16});
+        (void)caustics(queue, scene, {.method = Exact{.resolution = 8}, .photons = 16, .texels = 16});
+        (void)shade(queue, scene, camera, Glass{.method = Planes{.resolution = 8}, .samples = 1, .caustics = &map}).picture();
         const Grid grid = Grid::fit(scene.mesh.bounds(), 8);
         const Voxels voxels = voxelize(queue, scene.mesh, grid, Conservative{.channels = Channel::count | Channel::normal});
         (void)shade(queue, voxels, camera, Boxes{.samples = 1}).picture();

@@ -46,10 +46,14 @@ using GlassMethod = std::variant<Planes, Exact>;
 /// Throws Error (badOption) that lists what there is.
 GlassMethod glassByName(std::string_view name, std::span<const std::string> options = {});
 
+struct CausticMap;
+
 struct Glass {
     GlassMethod method{};
     Ground ground{};
     std::uint32_t samples = 2;  ///< camera samples along each side of a pixel, 1 to 4
+    /// What glass gathers on the ground (vitrail/light/caustics.h), of the same scene and ground, instead of what comes straight through it.
+    const CausticMap* caustics = nullptr;
 };
 
 /// `scene.mesh` in world space with normals (vitrail::withSmoothNormals makes them); materials with transmission above 0.5 are glass. At most

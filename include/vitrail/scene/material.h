@@ -31,6 +31,10 @@ struct Material {
 
     /// Absorption coefficient of Beer-Lambert per scene unit and channel: -ln(attenuationColour) / attenuationDistance.
     Float3 absorption() const;
+
+    /// Share of the light that passes one triangle where the material is a layer and no body: what `alpha` leaves uncovered, and of the rest
+    /// transmission times baseColour (glTF: thin-walled).
+    Float3 layerTransmittance() const;
 };
 
 }  // namespace v0

@@ -1,0 +1,101 @@
+// light/caustics.cl: photons through glass onto the ground (vitrail/light/caustics.h).
+#include "lib/fixed_point.cl"
+#include "lib/optics.cl"
+#include "lib/range.cl"
+#include "light/surroundings.cl"
+#pragma OPENCL FP_CONTRACT OFF
+
+#define PARTS 1048576  // of a photon's channel: kPhotonParts
+
+#define COUNT_PHOTONS 0
+#define COUNT_LANDED 1
+#define COUNT_ABSORBED 2
+#define COUNT_REFLECTED 3
+#define COUNT_MISSED 4
+#define COUNT_ENDED 5
+#define COUNTS 6
+
+static inline int caustics_sum(int3 parts) { return parts.x + parts.y + parts.z; }
+
+// Leaves a share of the parts; the others are returned.
+static inline int caustics_keep(int3* parts, float3 share) {
+    const int3 kept = convert_int3_rte(convert_float3(*parts) * clamp(share, 0.0f, 1.0f));
+    const int lost = caustics_sum(*parts - kept);
+    *parts = kept;
+    return lost;
+}
+
+// One photon a pixel of the light's G-buffer. place: low corner x and z, a texel's edge, texels a side. Parts of photons are summed in `sums`,
+// three a texel, and what became of all of them in `fates`.
+kernel void caustics_photons(MARCH_PARAMETERS, const vitrail_LightDesc light, const float4 place, global long* sums, global long* fates,
+                             ulong first, ulong count, uint perItem) {
+    const Volume volume = MARCH_VOLUME;
+    long tally[COUNTS] = {0, 0, 0, 0, 0, 0};
+    FOR_RANGE(i, count, perItem) {
+        const size_t pixel = first + i;
+        const uint triangle = nearest[pixel];
+        float3 o, d, position, normal, flat;
+        camera_ray(&camera, (uint)(pixel % camera.width), (uint)(pixel / camera.width), &o, &d);
+        if (triangle == NO_TRIANGLE || !march_first_hit(&grid, positions, indices, normals, triangle, o, d, &position, &normal, &flat)) continue;
+        ++tally[COUNT_PHOTONS];
+        int3 parts = (int3)(PARTS);
+        March march = {dot(d, flat) > 0.0f, triangle, MARCH_LEAST, 0};
+        uint material = triangleMaterial ? triangleMaterial[triangle] : 0u;
+        bool opaque = materials[material].colour.w <= 0.5f, ended = false;
+        if (!opaque && !march.inside) tally[COUNT_ABSORBED] += caustics_keep(&parts, xyz(materials[material].colour));
+        for (int events = 0; !opaque;) {
+            vitrail_MaterialDesc m = materials[material];
+            const float index = m.absorption.w, ratio = march.inside ? index : 1.0f / index;
+            const float3 facing = optics_facing(d, normal, flat);
+            const float reflected = fresnel_reflectance(-dot(d, facing), ratio);
+            if (optics_cross(&d, facing, flat, ratio)) {
+                march.inside = !march.inside;
+                tally[COUNT_REFLECTED] += caustics_keep(&parts, (float3)(1.0f - reflected));
+            }
+            Crossing hit;
+            if (!march_next(&volume, position, d, &march, &hit)) {
+                ended = march.steps >= bound || march.inside;
+                break;
+            }
+            march.inside = hit.inside;
+            march.triangle = hit.triangle;
+            if (!hit.inside || hit.triangle != NO_TRIANGLE) material = hit.material;
+            m = materials[material];
+            if (hit.inside) tally[COUNT_ABSORBED] += caustics_keep(&parts, optics_absorb(&m, hit.t * grid.extent.x));
+            opaque = materials[hit.material].colour.w <= 0.5f;
+            if (!opaque && ++events == VITRAIL_MOST_EVENTS) {
+                ended = true;
+                break;
+            }
+            if (!opaque && !hit.inside) tally[COUNT_ABSORBED] += caustics_keep(&parts, xyz(m.colour));
+            position = hit.position;
+            normal = hit.normal;
+            flat = hit.flat;
+        }
+        const int rest = caustics_sum(parts);
+        if (opaque || ended) {
+            tally[opaque ? COUNT_ABSORBED : COUNT_ENDED] += rest;
+            continue;
+        }
+        const float3 from = to_world(&grid, position);
+        const float t = surroundings_ground(&light, from, d);
+        const float x = (from.x + d.x * t - place.x) / place.z, z = (from.z + d.z * t - place.y) / place.z;
+        if (!(t > 0.0f) || !(x >= 0.0f && z >= 0.0f && x < place.w && z < place.w)) {
+            tally[COUNT_MISSED] += rest;
+            continue;
+        }
+        tally[COUNT_LANDED] += rest;
+        global long* sum = sums + 3 * ((size_t)z * (size_t)place.w + (size_t)x);
+        fixed_add(sum, parts.x);
+        fixed_add(sum + 1, parts.y);
+        fixed_add(sum + 2, parts.z);
+    }
+    for (int k = 0; k < COUNTS; ++k)
+        if (tally[k] != 0) fixed_add(fates + k, tally[k]);
+}
+
+kernel void caustics_resolve(global const long* sums, const float4 scale, global float4* irradiance, ulong count, uint perItem) {
+    FOR_RANGE(i, count, perItem) {
+        irradiance[i] = (float4)((float)sums[3 * i] * scale.x, (float)sums[3 * i + 1] * scale.y, (float)sums[3 * i + 2] * scale.z, 0.0f);
+    }
+}
