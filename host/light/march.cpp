@@ -15,7 +15,24 @@ namespace detail {
 namespace {
 
 float resolutionOf(const GlassMethod& method) {
-    return std::visit([](const auto& one) { return one.resolution; }, method);
+    return std::visit(
+        [](const auto& one) {
+            if constexpr (requires { one.resolution; })
+                return one.resolution;
+            else
+                return Planes{}.resolution;
+        },
+        method);
+}
+
+/// One plane a voxel.
+Buffer<vitrail_SurfaceVoxel> gatherPlanes(Call& call, const DeviceMesh& mesh, const VoxelLists& lists) {
+    const Buffer<std::uint32_t>& rank = lists.voxels.rank();
+    Buffer<vitrail_SurfaceVoxel> surface = call.queue().workspace().take<vitrail_SurfaceVoxel>(lists.ends.size(), "surface records");
+    call.launchRange(Program{"baselines/plane", realOptions(call.queue())}, "plane_gather", rank.size(), lists.voxels.grid().desc(), mesh.positions(),
+                     mesh.indices(), mesh.vertexCount(), mesh.normals(), lists.voxels.bits(), lists.voxels.brickTiles(), rank,
+                     lists.voxels.countBuffer(), lists.triangles, lists.ends, surface);
+    return surface;
 }
 
 }  // namespace
@@ -33,15 +50,20 @@ void checkGlass(const Scene& scene, const GlassMethod& method) {
                                               "materials that index the scene's list"});
 }
 
+Buffer<vitrail_MaterialDesc> materialTable(Call& call, const Scene& scene) {
+    std::vector<vitrail_MaterialDesc> table;
+    for (const Material& m : scene.materials) table.push_back({with(m.baseColour, m.transmission), with(m.absorption(), m.indexOfRefraction)});
+    Buffer<vitrail_MaterialDesc> materials = call.queue().workspace().take<vitrail_MaterialDesc>(table.size(), "materials");
+    call.upload(materials, table.data(), table.size());
+    return materials;
+}
+
 MarchVolume marchVolume(Call& call, const Scene& scene, const Camera& camera, const GlassMethod& method) {
     Queue& queue = call.queue();
     const Grid grid = Grid::fit(scene.mesh.bounds(), static_cast<std::uint32_t>(resolutionOf(method)));
     DeviceMesh mesh(queue, scene.mesh.view());
     GBuffer gbuffer = rasterize(queue, mesh, camera);
-    std::vector<vitrail_MaterialDesc> table;
-    for (const Material& m : scene.materials) table.push_back({with(m.baseColour, m.transmission), with(m.absorption(), m.indexOfRefraction)});
-    Buffer<vitrail_MaterialDesc> materials = queue.workspace().take<vitrail_MaterialDesc>(table.size(), "materials");
-    call.upload(materials, table.data(), table.size());
+    Buffer<vitrail_MaterialDesc> materials = materialTable(call, scene);
     const Uint3 size = grid.size();
     const auto bound = static_cast<std::int32_t>(4 * (size.x + size.y + size.z));
     if (std::holds_alternative<Exact>(method)) {
@@ -49,8 +71,14 @@ MarchVolume marchVolume(Call& call, const Scene& scene, const Camera& camera, co
         return {grid, std::move(mesh), std::move(lists.voxels), {}, {}, {}, std::move(lists.triangles), std::move(lists.ends), std::move(gbuffer),
                 std::move(materials), bound};
     }
-    SurfaceVoxels surface = voxelizeSurface(queue, mesh, grid);
     Voxels solid = voxelize(queue, mesh, grid, Solid{});
+    if (std::holds_alternative<Plane>(method)) {
+        VoxelLists lists = voxelizeLists(queue, mesh, grid);
+        Buffer<vitrail_SurfaceVoxel> surface = gatherPlanes(call, mesh, lists);
+        return {grid, std::move(mesh), std::move(lists.voxels), std::move(surface), {}, std::move(solid), {}, {}, std::move(gbuffer),
+                std::move(materials), bound};
+    }
+    SurfaceVoxels surface = voxelizeSurface(queue, mesh, grid);
     return {grid, std::move(mesh), std::move(surface.voxels), std::move(surface.surface), std::move(surface.planes), std::move(solid), {}, {},
             std::move(gbuffer), std::move(materials), bound};
 }
