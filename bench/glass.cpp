@@ -10,8 +10,8 @@
 #include <array>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <map>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -139,12 +139,17 @@ constexpr TableModel kTableModels[] = {
     {"bunny_hr", nullptr, {}},
 };
 
+std::string titleOf(const TableModel& model) {
+    return model.paper == nullptr ? std::string(model.name) : std::string(model.name) + " (" + model.paper + ")";
+}
+
 constexpr float kBestAngles[] = {2.5f, 5.0f, 20.0f, 60.0f};
 
 /// Mean correct rate over the views.
 double rateOf(Queue& queue, const Scene& scene, std::span<const std::vector<vitrail_RayEnd>> truth, const GlassMethod& method) {
     double sum = 0;
-    for (unsigned k = 0; k < kViews; ++k) sum += compareRays(glassRays(queue, scene, view(scene, k), method).ends, truth[k]).correct / kViews;
+    for (unsigned k = 0; k < kViews; ++k)
+        sum += compareRays(glassRays(queue, scene, view(scene, k), method).ends, truth[k]).correct / kViews;
     return sum;
 }
 
@@ -163,10 +168,11 @@ void printTables(Queue& queue) {
         return found == all.end() ? nullptr : &*found;
     };
     for (const float index : {1.14f, 1.3f}) {
-        std::printf("\nCorrect rates (dot > 0.9962) at index of refraction %g, 256 voxels, %u x %u pixels, means of %u views; in brackets Table 3\n\n", double(index), kPixels,
-                    kPixels, kViews);
-        std::puts("| mesh (theirs) | `one` | `two` | `two`, thickness=1 | `paper`, no heuristic | H1 2.5 | H1 5 | H1 best | H1 best, H2 5 % | `plane` | `planes` | `exact` | paper > one > two |\n"
-                  "|---|---|---|---|---|---|---|---|---|---|---|---|---|");
+        std::printf("\nCorrect rates (dot > 0.9962) at index of refraction %g, 256 voxels, %u x %u pixels, means of %u views; in brackets Table 3\n\n",
+                    double(index), kPixels, kPixels, kViews);
+        std::puts("| mesh (theirs) | `one` | `two` | `two`, thickness=1 | `paper`, no heuristic | H1 2.5 | H1 5 | H1 best | H1 best, H2 5 % | and filter "
+                  "| `plane` | `planes` | `exact` | order |\n"
+                  "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|");
         for (const TableModel& model : kTableModels) {
             const Input* input = find(model);
             if (input == nullptr) continue;
@@ -175,7 +181,8 @@ void printTables(Queue& queue) {
             std::vector<std::vector<vitrail_RayEnd>> truth;
             for (unsigned k = 0; k < kViews; ++k) truth.push_back(reference::glass(scene, view(scene, k)));
             const auto rate = [&](const GlassMethod& method) { return rateOf(queue, scene, truth, method); };
-            const double one = rate(One{}), two = rate(Two{}), image = rate(Two{.thickness = Two::Thickness::image}), none = rate(Paper{.angle = 0, .extension = 0});
+            const double one = rate(One{}), two = rate(Two{}), image = rate(Two{.thickness = Two::Thickness::image}),
+                         none = rate(Paper{.angle = 0, .extension = 0});
             std::array<double, std::size(kBestAngles)> byAngle;
             for (std::size_t i = 0; i < byAngle.size(); ++i) byAngle[i] = rate(Paper{.angle = kBestAngles[i], .extension = 0});
             const std::size_t best = static_cast<std::size_t>(std::ranges::max_element(byAngle) - byAngle.begin());
@@ -185,7 +192,7 @@ void printTables(Queue& queue) {
                 if (model.paper != nullptr && printed >= 0) std::printf(" (%.3f)", model.printed.rates[static_cast<std::size_t>(printed)]);
                 std::printf(" |");
             };
-            std::printf("| %s%s |", model.name, model.paper == nullptr ? "" : (std::string(" (") + model.paper + ")").c_str());
+            std::printf("| %s |", titleOf(model).c_str());
             cell(one, 0);
             cell(two, 1);
             cell(image, -1);
@@ -195,16 +202,21 @@ void printTables(Queue& queue) {
             std::printf(" %g:", double(kBestAngles[best]));
             cell(byAngle[best], 5);
             cell(both, 6);
+            cell(rate(Paper{.angle = kBestAngles[best], .extension = 5, .filter = true}), -1);
             cell(rate(Plane{}), -1);
             cell(rate(Planes{}), -1);
             cell(rate(Exact{}), -1);
-            std::printf(" %s |\n", both > one && one > two ? "yes" : both > two && two > one ? "paper > two > one" : two > both && both > one ? "two > paper > one" : "no");
+            std::pair<double, const char*> order[] = {{both, "paper"}, {one, "one"}, {two, "two"}};
+            std::ranges::sort(order, std::greater());
+            std::printf(" %s > %s > %s |\n", order[0].second, order[1].second, order[2].second);
             std::fflush(stdout);
         }
     }
-    std::printf("\nFrames per second at 1.14, 256 voxels, %u x %u pixels, voxels included (`rays`: the reference on all cores, its tree included); in brackets Table 2\n\n", kPixels,
-                kPixels);
-    std::puts("| mesh (theirs) | triangles | `one` | `two` | `two`, thickness=1 | `paper` | `plane` | `planes` | `exact` | rays |\n|---|---|---|---|---|---|---|---|---|---|");
+    std::printf("\nFrames per second at 1.14, 256 voxels, %u x %u pixels, voxels included (rays: the reference on all cores, its tree included); in "
+                "brackets Table 2\n\n",
+                kPixels, kPixels);
+    std::puts("| mesh (theirs) | triangles | `one` | `two` | `two`, thickness=1 | `paper` | `plane` | `planes` | `exact` | rays |\n"
+              "|---|---|---|---|---|---|---|---|---|---|");
     for (const TableModel& model : kTableModels) {
         const Input* input = find(model);
         if (input == nullptr) continue;
@@ -215,7 +227,7 @@ void printTables(Queue& queue) {
             if (model.paper != nullptr && printed >= 0) std::printf(" (%s)", model.printed.times[static_cast<std::size_t>(printed)]);
             std::printf(" |");
         };
-        std::printf("| %s%s | %zu |", model.name, model.paper == nullptr ? "" : (std::string(" (") + model.paper + ")").c_str(), scene.mesh.triangleCount());
+        std::printf("| %s | %u |", titleOf(model).c_str(), static_cast<unsigned>(scene.mesh.triangleCount()));
         cell(timeOf(queue, scene, One{}), 0);
         cell(timeOf(queue, scene, Two{}), 1);
         cell(timeOf(queue, scene, Two{.thickness = Two::Thickness::image}), -1);
@@ -259,11 +271,9 @@ int main(int argc, char** argv) {
                     for (const Method& row : methods()) {
                         const bool plain = std::string_view(index) == "1.14";
                         if (row.family != Family::glass || (!plain && std::string_view(resolution) != "256")) continue;
-                        const bool sized = std::ranges::any_of(row.options, [](const MethodOption& option) { return option.name == "resolution"; });
-                        if (!sized && std::string_view(resolution) != "256") continue;  // once
+                        const std::vector<std::string> options = atResolution(row, resolution);
+                        if (options.empty() && std::string_view(resolution) != "256") continue;  // once
                         const std::string name = input.name + "/" + resolution + "/" + std::string(row.name) + (plain ? "" : std::string("/ior=") + index);
-                        std::vector<std::string> options;
-                        if (sized) options.push_back(std::string("resolution=") + resolution);
                         addBenchmark(name, [&queue, &input, index, method = glassByName(row.name, options)](benchmark::State& state) {
                             Scene scene = input.scene;
                             scene.materials[0].indexOfRefraction = std::stof(index);

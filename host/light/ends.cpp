@@ -15,11 +15,11 @@ namespace detail {
 
 namespace {
 
-Float3 from4(const vitrail_float4& v) { return {v.x, v.y, v.z}; }
+Float3 three(const vitrail_float4& v) { return {v.x, v.y, v.z}; }
 
 /// Cubic cells along the view around the mesh, the longest side of that box in `resolution` of them.
 Grid viewGrid(const Mesh& mesh, const vitrail_CameraDesc& camera, float resolution) {
-    const Double3 axes[3] = {Double3(from4(camera.right)), Double3(from4(camera.up)), Double3(from4(camera.forward))};
+    const Double3 axes[3] = {Double3(three(camera.right)), Double3(three(camera.up)), Double3(three(camera.forward))};
     Double3 low(std::numeric_limits<double>::infinity()), high(-low);
     for (const Float3& p : mesh.positions)
         for (int k = 0; k < 3; ++k) {
@@ -29,12 +29,12 @@ Grid viewGrid(const Mesh& mesh, const vitrail_CameraDesc& camera, float resoluti
             high[k] = std::max(high[k], along);
         }
     const Double3 extent = high - low, middle = (low + high) * 0.5;
-    const double longest = std::max({extent.x, extent.y, extent.z}) * (1 + 2.0 / 10001);
+    const double padding = std::max({extent.x, extent.y, extent.z}) * 2 / 10001, longest = std::max({extent.x, extent.y, extent.z}) + padding;
     if (!(longest > 0) || !std::isfinite(longest))
         throw Error(ErrorCode::badInput, {"the mesh has no size to voxelize along the view", "", "", "a mesh of finite vertices that differ"});
     const double edge = longest / resolution;
     Uint3 size;
-    for (int k = 0; k < 3; ++k) size[k] = static_cast<std::uint32_t>(std::ceil((extent[k] + longest - longest / (1 + 2.0 / 10001)) / edge - 1e-9));
+    for (int k = 0; k < 3; ++k) size[k] = static_cast<std::uint32_t>(std::ceil((extent[k] + padding) / edge - 1e-9));
     size = glm::max(size, Uint3(1));
     const Double3 half = Double3(size) * (edge * 0.5);
     OrthographicGrid grid;
@@ -50,8 +50,8 @@ Grid viewGrid(const Mesh& mesh, const vitrail_CameraDesc& camera, float resoluti
 }
 
 template <class... Args>
-void launchSeen(Call& call, const char* kernel, const Seen& seen, const GBuffer& gbuffer, const Buffer<vitrail_RayEnd>& rays, const Buffer<float>& from,
-                const Args&... args) {
+void launchSeen(Call& call, const char* kernel, const Seen& seen, const GBuffer& gbuffer, const Buffer<vitrail_RayEnd>& rays,
+                const Buffer<float>& from, const Args&... args) {
     const DeviceMesh& mesh = seen.mesh;
     call.launchRange(Program{"light/image_space", ""}, kernel, rays.size(), seen.camera, mesh.positions(), mesh.indices(), mesh.normals(),
                      mesh.materials(), gbuffer.triangle, seen.materials, rays, from, args...);
@@ -69,9 +69,10 @@ EndVoxels trace(Call& call, const Seen& seen, const GBuffer& gbuffer, const Two&
         return {};
     }
     const Grid grid = viewGrid(seen.scene.mesh, seen.camera, method.resolution);
-    const Voxels surface = voxelize(call.queue(), seen.mesh, grid, Sampled{.channels = Channel::normal}), solid = voxelize(call.queue(), seen.mesh, grid, Solid{});
-    launchSeen(call, "two_voxels_ends", seen, gbuffer, rays, from, grid.desc(), surface.bits(), surface.bricks(), surface.rank(), surface.normalBuffer(),
-               solid.bits(), solid.bricks());
+    const Voxels surface = voxelize(call.queue(), seen.mesh, grid, Sampled{.channels = Channel::normal}),
+                 solid = voxelize(call.queue(), seen.mesh, grid, Solid{});
+    launchSeen(call, "two_voxels_ends", seen, gbuffer, rays, from, grid.desc(), surface.bits(), surface.bricks(), surface.rank(),
+               surface.normalBuffer(), solid.bits(), solid.bricks());
     return {grid.size(), surface.occupied()};
 }
 
@@ -82,8 +83,8 @@ EndVoxels trace(Call& call, const Seen& seen, const Paper& method, Buffer<vitrai
     // Above every cosine: no angle is too small.
     const float cosine = method.angle > 0 ? static_cast<float>(std::cos(glm::radians(double(method.angle)))) : 2.0f;
     const Uint3 size = grid.size();
-    call.launchRange(Program{"baselines/paper", ""}, "paper_ends", rays.size(), seen.camera, grid.desc(), voxels.bits(), voxels.bricks(), voxels.rank(),
-                     voxels.normalBuffer(), voxels.materialBuffer(), seen.materials, cosine, method.filter ? 1u : 0u,
+    call.launchRange(Program{"baselines/paper", ""}, "paper_ends", rays.size(), seen.camera, grid.desc(), voxels.bits(), voxels.bricks(),
+                     voxels.rank(), voxels.normalBuffer(), voxels.materialBuffer(), seen.materials, cosine, method.filter ? 1u : 0u,
                      static_cast<std::int32_t>(4 * (size.x + size.y + size.z)), rays, from);
     return {size, voxels.occupied()};
 }

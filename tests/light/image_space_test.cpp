@@ -144,11 +144,12 @@ TEST(ImageSpace, RaysEndOnOpaqueThings) {
 }
 
 TEST(ImageSpace, InAFurnaceNoLightIsLostOrMade) {
-    for (const GlassMethod& method : {GlassMethod(One{}), GlassMethod(Two{.resolution = 32}), GlassMethod(Two{.resolution = 32, .thickness = Two::Thickness::image}),
-                                      GlassMethod(Paper{.resolution = 32})}) {
+    for (const GlassMethod& method : {GlassMethod(One{}), GlassMethod(Two{.resolution = 32}),
+                                      GlassMethod(Two{.resolution = 32, .thickness = Two::Thickness::image}), GlassMethod(Paper{.resolution = 32})}) {
         Scene scene = glassOf(makeShape("torus"), 1.5f);
         scene.environment.zenith = scene.environment.horizon = scene.environment.nadir = Float3(1.0f);
-        const Image image = shade(queue(), scene, Camera::around(scene.mesh.bounds(), 30, 20, 32, 32), Glass{.method = method, .ground = {.visible = false}, .samples = 1});
+        const Camera camera = Camera::around(scene.mesh.bounds(), 30, 20, 32, 32);
+        const Image image = shade(queue(), scene, camera, Glass{.method = method, .ground = {.visible = false}, .samples = 1});
         // F + (1 - F) = 1 up to float rounding.
         for (const Float4& p : image.picture().pixels) ASSERT_NEAR(p.y, 1.0, 1e-5) << image.report().method;
     }

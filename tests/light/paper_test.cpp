@@ -91,7 +91,7 @@ Scene punched() {
         }
         const int x = static_cast<int>((middle.x + 0.5f) * 16), y = static_cast<int>((middle.y + 0.5f) * 16);
         if (front && x % 3 == 1 && y % 3 == 1) continue;
-        mesh.indices.insert(mesh.indices.end(), box.indices.begin() + static_cast<std::ptrdiff_t>(3 * t), box.indices.begin() + static_cast<std::ptrdiff_t>(3 * t + 3));
+        for (std::size_t k = 0; k < 3; ++k) mesh.indices.push_back(box.indices[3 * t + k]);
     }
     return glassOf(mesh, 1.4f);
 }

@@ -71,9 +71,9 @@ std::string fingerprint(Queue& queue, const Mesh& mesh) {
     const Camera camera = Camera::around(bounds, 30, 20, 24, 20);
     for (const Method& row : methods()) {
         if (row.family != Family::glass) continue;
-        const bool sized = !row.options[0].name.empty();
-        const std::vector<vitrail_RayEnd> ends =
-            glassRays(queue, scene, camera, glassByName(row.name, sized ? std::vector<std::string>{"resolution=32"} : std::vector<std::string>{})).ends;
+        std::vector<std::string> options;
+        if (!row.options[0].name.empty()) options.push_back("resolution=32");
+        const std::vector<vitrail_RayEnd> ends = glassRays(queue, scene, camera, glassByName(row.name, options)).ends;
         std::vector<std::uint32_t> words(ends.size() * (sizeof(vitrail_RayEnd) / sizeof(std::uint32_t)));
         std::memcpy(words.data(), ends.data(), words.size() * sizeof(std::uint32_t));
         lines += std::string(row.name) + hashOf(words) + "\n";

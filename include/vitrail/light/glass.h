@@ -2,7 +2,7 @@
 // first hit comes from the triangles (vitrail/raster/gbuffer.h), every later crossing from the planes inside a voxel
 // (vitrail/voxelize/surface.h) or from the triangles listed there (vitrail/voxelize/lists.h). The march of planes knows whether it is inside or
 // outside, so that a surface met twice counts once. Snell's law and total internal reflection at each crossing, Beer-Lambert inside; opaque
-// materials end a ray; what leaves sees the environment and a ground that takes the transparent shadow.
+// materials end a ray; what leaves sees the environment and a ground that takes the transparent shadow. Beside it their own methods.
 #pragma once
 #include <span>
 #include <string>
@@ -113,10 +113,10 @@ struct Glass {
 };
 
 /// `scene.mesh` in world space with normals (vitrail::withSmoothNormals makes them); materials with transmission above 0.5 are glass. At most
-/// 16 crossings a ray and 4 grid diagonals of steps, counted in the report when met. What One, Two and Paper find is lit through the voxels of
-/// Planes at their resolution (One: 256), which only their pictures make. Waits for sizes, not for the picture.
-/// Memory: estimate() of the voxels, and 24 bytes a sample. Same bits for any number of threads on one device. Throws Error (badInput,
-/// badOption, outOfMemory).
+/// 16 crossings a ray (of Paper any number) and 4 grid diagonals of steps, counted in the report when met. What One, Two and Paper find is lit
+/// through the voxels of Planes at their resolution (One: 256), which only their pictures make. Waits for sizes, not for the picture. Memory:
+/// estimate() of the voxels, and 24 bytes a sample, 72 of One, Two and Paper. Same bits for any number of threads on one device. Throws Error
+/// (badInput, badOption, outOfMemory).
 Image shade(Queue& queue, const Scene& scene, const Camera& camera, const Glass& effect);
 
 /// Where the ray through each pixel's centre ends, without Fresnel's reflection, row 0 at the top: what metrics/rays.h judges.
