@@ -39,9 +39,9 @@ std::vector<Contender> contenders(Queue& queue) {
     std::vector<Contender> all;
     for (const Method& row : methods())
         if (row.family == Family::glass)
-            all.push_back({std::string(row.name), [&queue, name = row.name](benchmark::State& state, const Scene& scene, const Camera& camera, float resolution) {
-                               const std::vector<std::string> options{"resolution=" + std::to_string(static_cast<int>(resolution))};
-                               GlassRays rays = glassRays(queue, scene, camera, glassByName(name, options));
+            all.push_back({std::string(row.name), [&queue, &row](benchmark::State& state, const Scene& scene, const Camera& camera, float resolution) {
+                               const std::vector<std::string> options = atResolution(row, std::to_string(static_cast<int>(resolution)));
+                               GlassRays rays = glassRays(queue, scene, camera, glassByName(row.name, options));
                                state.SetIterationTime(rays.report.kernelMs * 1e-3);
                                return std::move(rays.ends);
                            }});

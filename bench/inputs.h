@@ -2,6 +2,7 @@
 #pragma once
 #include <benchmark/benchmark.h>
 #include <vitrail/io/load.h>
+#include <vitrail/methods.h>
 #include <vitrail/scene/shapes.h>
 
 #include <cstdio>
@@ -20,6 +21,13 @@ inline std::optional<std::filesystem::path> dataMesh(const std::string& name) {
     if (folder == nullptr) return std::nullopt;
     const auto path = std::filesystem::path(folder) / name;
     return std::filesystem::exists(path) ? std::optional(path) : std::nullopt;
+}
+
+/// The option of a method for voxels along the longest axis, where it has any.
+inline std::vector<std::string> atResolution(const vitrail::Method& row, const std::string& voxels) {
+    for (const vitrail::MethodOption& option : row.options)
+        if (option.name == "resolution") return {"resolution=" + voxels};
+    return {};
 }
 
 /// Registers one benchmark of manual time in milliseconds; what it throws is its error.

@@ -3,6 +3,7 @@
 
 #include <vitrail/methods.h>
 
+#include "light/ends.h"
 #include "light/march.h"
 #include "light/surroundings.h"
 #include "voxelize/prepare.h"
@@ -10,11 +11,25 @@
 namespace vitrail {
 inline namespace v0 {
 
+namespace {
+
+/// The alternative of that name, in `method`.
+template <std::size_t I = 0>
+bool choose(std::string_view name, GlassMethod& method) {
+    if constexpr (I == std::variant_size_v<GlassMethod>) {
+        return false;
+    } else {
+        if (name != std::variant_alternative_t<I, GlassMethod>::name) return choose<I + 1>(name, method);
+        method.emplace<I>();
+        return true;
+    }
+}
+
+}  // namespace
+
 GlassMethod glassByName(std::string_view name, std::span<const std::string> options) {
     GlassMethod method;
-    if (name == Exact::name)
-        method = Exact{};
-    else if (name != Planes::name) {
+    if (!choose(name, method)) {
         std::string known;
         for (const Method& row : methods())
             if (row.family == Family::glass) known += (known.empty() ? "" : ", ") + std::string(row.name);
@@ -37,10 +52,17 @@ Image shade(Queue& queue, const Scene& scene, const Camera& camera, const Glass&
             const Buffer<float> map = detail::uploadEnvironment(call, scene);
             const Buffer<float> none;
             const CausticMap* caustic = effect.caustics;
+            const Buffer<float>& irradiance = caustic != nullptr ? caustic->irradiance : none;
             const vitrail_float4 place = caustic != nullptr ? vitrail_float4{caustic->low.x, caustic->low.y, caustic->edge, static_cast<float>(caustic->texels)}
                                                             : vitrail_float4{};
-            detail::launchMarch(call, "glass", "glass_shade", volume, samples, light, map, caustic != nullptr ? caustic->irradiance : none, place, status,
-                                seen);
+            if (!detail::tracesEnds(effect.method)) {
+                detail::launchMarch(call, "glass", "glass_shade", volume, samples, light, map, irradiance, place, status, seen);
+                return;
+            }
+            Buffer<vitrail_RayEnd> rays = queue.workspace().take<vitrail_RayEnd>(samples, "ends of rays");
+            Buffer<float> from = queue.workspace().take<float>(4 * samples, "where rays end");
+            detail::traceEnds(call, {scene, volume.mesh, volume.materials, volume.gbuffer.camera, &volume.gbuffer}, effect.method, rays, from);
+            detail::launchMarch(call, "ends", "ends_shade", volume, samples, light, map, irradiance, place, status, rays, from, seen);
         });
 }
 
@@ -52,19 +74,28 @@ GlassRays glassRays(Queue& queue, const Scene& scene, const Camera& camera, cons
         detail::Call call(queue, "tracing glass of " + std::to_string(scene.mesh.triangleCount()) + " triangles");
         const std::uint64_t pixels = static_cast<std::uint64_t>(camera.width) * camera.height;
         Buffer<vitrail_RayEnd> ends = queue.workspace().take<vitrail_RayEnd>(pixels, "ends of rays");
-        const detail::MarchVolume volume = detail::marchVolume(call, scene, camera, method);
-        voxelizing = volume.voxelizing;
-        detail::launchMarch(call, "glass", "glass_ends", volume, pixels, ends);
+        if (detail::tracesEnds(method)) {
+            const DeviceMesh mesh(queue, scene.mesh.view());
+            const Buffer<vitrail_MaterialDesc> materials = detail::uploadMaterials(call, scene);
+            Buffer<float> nowhere;
+            const detail::EndVoxels voxels = detail::traceEnds(call, {scene, mesh, materials, describe(camera)}, method, ends, nowhere);
+            out.report.grid = voxels.grid;
+            out.report.occupied = voxels.occupied;
+        } else {
+            const detail::MarchVolume volume = detail::marchVolume(call, scene, camera, method);
+            detail::launchMarch(call, "glass", "glass_ends", volume, pixels, ends);
+            out.report.grid = volume.grid.size();
+            out.report.occupied = volume.voxels.occupied();
+            voxelizing = volume.voxelizing;
+        }
         out.ends = ends.read(queue);
         out.report.effect = "rays";
         out.report.method = detail::nameOf(method);
-        out.report.grid = volume.grid.size();
-        out.report.triangles = volume.mesh.triangleCount();
-        out.report.occupied = volume.voxels.occupied();
+        out.report.triangles = scene.mesh.triangleCount();
         record = call.record();
     }
     static_cast<CallReport&>(out.report) = detail::resolve(*record);
-    out.report.voxelizeMs = detail::resolve(*voxelizing).kernelMs;
+    if (voxelizing) out.report.voxelizeMs = detail::resolve(*voxelizing).kernelMs;
     out.report.rays = out.ends.size();
     for (const vitrail_RayEnd& end : out.ends) {
         out.report.lostRays += end.fate == VITRAIL_RAY_LOST;

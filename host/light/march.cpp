@@ -15,7 +15,14 @@ namespace detail {
 namespace {
 
 float resolutionOf(const GlassMethod& method) {
-    return std::visit([](const auto& one) { return one.resolution; }, method);
+    return std::visit(
+        [](const auto& one) {
+            if constexpr (requires { one.resolution; })
+                return one.resolution;
+            else
+                return Planes{}.resolution;
+        },
+        method);
 }
 
 }  // namespace
@@ -60,9 +67,9 @@ MarchVolume marchVolume(Call& call, const Scene& scene, const Camera& camera, co
         return {grid, std::move(mesh), std::move(lists.voxels), {}, {}, {}, std::move(lists.triangles), std::move(lists.ends), std::move(gbuffer),
                 std::move(materials), voxelizing.record(), bound};
     }
-    SurfaceVoxels surface = voxelizeSurface(queue, mesh, grid);
-    surface.voxels.mip();
     Voxels solid = voxelize(queue, mesh, grid, Solid{});
+    SurfaceVoxels surface = voxelizeSurface(queue, mesh, grid, std::holds_alternative<Plane>(method));
+    surface.voxels.mip();
     return {grid, std::move(mesh), std::move(surface.voxels), std::move(surface.surface), std::move(surface.planes), std::move(solid), {}, {},
             std::move(gbuffer), std::move(materials), voxelizing.record(), bound};
 }

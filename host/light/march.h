@@ -38,6 +38,7 @@ void checkGlass(const Scene& scene, const GlassMethod& method);
 
 Buffer<vitrail_MaterialDesc> uploadMaterials(Call& call, const Scene& scene);
 
+/// What `method` marches through; what Planes does at the same resolution where it does not march.
 MarchVolume marchVolume(Call& call, const Scene& scene, const Camera& camera, const GlassMethod& method);
 
 /// `kernel` of light/`file` for every sample, in bands, so that the callback is asked while rays run; `args` are those between MARCH_PARAMETERS

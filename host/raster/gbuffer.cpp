@@ -30,8 +30,9 @@ vitrail_CameraDesc describe(const Camera& camera) {
     return {with(camera.eye, flat ? 1.0f : 0.0f), with(right, halfWidth), with(up, halfHeight), with(forward, 0), camera.width, camera.height, 0, 0};
 }
 
-GBuffer rasterize(Queue& queue, const DeviceMesh& mesh, const Camera& camera) {
-    const vitrail_CameraDesc desc = describe(camera);
+GBuffer rasterize(Queue& queue, const DeviceMesh& mesh, const Camera& camera, Faces faces) { return rasterize(queue, mesh, describe(camera), faces); }
+
+GBuffer rasterize(Queue& queue, const DeviceMesh& mesh, const vitrail_CameraDesc& desc, Faces faces) {
     detail::Call call(queue, "rasterizing " + std::to_string(mesh.triangleCount()) + " triangles");
     const std::uint64_t pixels = static_cast<std::uint64_t>(desc.width) * desc.height;
     Workspace& workspace = queue.workspace();
@@ -40,10 +41,10 @@ GBuffer rasterize(Queue& queue, const DeviceMesh& mesh, const Camera& camera) {
     call.fill(out.depth, 0xff);
     call.fill(out.triangle, 0xff);
     const detail::Program program{"raster", detail::realOptions(queue)};
-    call.launchRange(program, "gbuffer_depth", mesh.triangleCount(), desc, mesh.positions(), mesh.indices(), mesh.vertexCount(), out.depth,
-                     boxed);
-    call.launchRange(program, "gbuffer_nearest", mesh.triangleCount(), desc, mesh.positions(), mesh.indices(), mesh.vertexCount(), out.depth,
-                     boxed, out.triangle);
+    call.launchRange(program, "gbuffer_depth", mesh.triangleCount(), desc, mesh.positions(), mesh.indices(), mesh.vertexCount(),
+                     static_cast<std::uint32_t>(faces), out.depth, boxed);
+    call.launchRange(program, "gbuffer_nearest", mesh.triangleCount(), desc, mesh.positions(), mesh.indices(), mesh.vertexCount(),
+                     static_cast<std::uint32_t>(faces), out.depth, boxed, out.triangle);
     return out;
 }
 

@@ -9,7 +9,7 @@
 namespace vitrail {
 inline namespace v0 {
 
-SurfaceVoxels voxelizeSurface(Queue& queue, const DeviceMesh& mesh, const Grid& grid) {
+SurfaceVoxels voxelizeSurface(Queue& queue, const DeviceMesh& mesh, const Grid& grid, bool onePlane) {
     detail::Call call(queue, "gathering the surface of " + std::to_string(mesh.triangleCount()) + " triangles");
     VoxelLists lists = voxelizeLists(queue, mesh, grid);
     call.step("surface: gather", 0.75);
@@ -17,8 +17,9 @@ SurfaceVoxels voxelizeSurface(Queue& queue, const DeviceMesh& mesh, const Grid& 
     Workspace& workspace = queue.workspace();
     SurfaceVoxels out{std::move(lists.voxels), workspace.take<vitrail_SurfaceVoxel>(lists.ends.size(), "surface records"), {}};
     Buffer<std::uint32_t> counts = workspace.take<std::uint32_t>(lists.ends.size(), "planes of voxels");
+    const detail::Program program{"voxelize/surface", detail::realOptions(queue) + (onePlane ? " -DVITRAIL_ONE_PLANE" : "")};
     const auto gather = [&] {
-        call.launchRange(detail::Program{"voxelize/surface", detail::realOptions(queue)}, "surface_gather", rank.size(), grid.desc(), mesh.positions(),
+        call.launchRange(program, "surface_gather", rank.size(), grid.desc(), mesh.positions(),
                          mesh.indices(), mesh.vertexCount(), mesh.normals(), out.voxels.bits(), out.voxels.brickTiles(), rank,
                          out.voxels.countBuffer(), lists.triangles, lists.ends, out.surface, counts, out.planes);
     };

@@ -28,7 +28,7 @@ struct Method {
     bool channels;           ///< can make channels
     bool cameraGrids;        ///< works on camera grids as well as on boxes
     Role role;
-    std::array<MethodOption, 3> options;  ///< unused rows have an empty name
+    std::array<MethodOption, 4> options;  ///< unused rows have an empty name
 };
 
 inline constexpr MethodOption kNoOption{"", 0, 0, 0, "", ""};
@@ -94,6 +94,25 @@ inline constexpr Method kMethods[] = {
      "The map of counted with one absorption for all voxels: a trunk as light as leaves.", false, false, Role::baseline,
      {MethodOption{"resolution", 512, 8, 4096, "columns", "as for counted"}, MethodOption{"slices", 256, 1, 4096, "slices", "as for counted"},
       MethodOption{"absorption", 0.5, 0, 100, "1", "of a voxel with a triangle"}}},
+    {"one", Family::glass, "Chang et al. 2013, Tables 2 and 3", Guarantee::none,
+     "The first surface exactly, and nothing after it: right where what follows bends a ray by less than is asked for.", false, false, Role::product,
+     {kNoOption, kNoOption, kNoOption}},
+    {"two", Family::glass, "Chang et al. 2013, section 5.1; Wyman 2005", Guarantee::none,
+     "The first surface exactly, and a second one where the glass behind the pixel ends: right for convex bodies that are no prisms.", false, false,
+     Role::product,
+     {MethodOption{"resolution", 256, 8, 2048, "voxels", "voxels along the longest axis"},
+      MethodOption{"thickness", 0, 0, 1, "choice", "from 0 voxels, 1 a map of the back faces"}, kNoOption}},
+    {"paper", Family::glass, "Chang et al. 2013, section 5.2", Guarantee::none,
+     "A refraction in every surface voxel that steps along the ray's longest axis land in, if its normal is new: extra and missed ones are many.",
+     false, false, Role::baseline,
+     {MethodOption{"resolution", 256, 8, 2048, "voxels", "voxels along the longest axis"},
+      MethodOption{"angle", 20, 0, 180, "degrees", "heuristic 1: refract again only where the normal turned by more; 0: always"},
+      MethodOption{"extension", 5, 0, 100, "percent", "heuristic 2: how far a slice's slab reaches into its neighbours"},
+      MethodOption{"filter", 0, 0, 1, "0 or 1", "1: a 3 x 3 x 3 low-pass filter over voxels and their normals"}}},
+    {"plane", Family::glass, "Chang et al. 2013, section 5.2, with exact steps", Guarantee::none,
+     "The march of planes with one plane a voxel and its mean normal: what gradients and further planes add is seen beside it.", false, false,
+     Role::baseline,
+     {MethodOption{"resolution", 256, 8, 2048, "voxels", "voxels along the longest axis"}, kNoOption, kNoOption}},
 };
 
 constexpr std::span<const Method> methods() { return kMethods; }

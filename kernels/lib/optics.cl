@@ -12,23 +12,6 @@
 #endif
 #pragma OPENCL FP_CONTRACT OFF
 
-// vitrail_facing and vitrail_cross of layout/ray_end.h.
-static inline float3 optics_facing(float3 d, float3 normal, float3 flat) {
-    float out[3];
-    const float from[3] = {d.x, d.y, d.z}, s[3] = {normal.x, normal.y, normal.z}, g[3] = {flat.x, flat.y, flat.z};
-    vitrail_facing(from, s, g, out);
-    return (float3)(out[0], out[1], out[2]);
-}
-static inline bool optics_cross(float3* d, float3 facing, float3 flat, float ratio) {
-    float out[3];
-    const float from[3] = {d->x, d->y, d->z}, n[3] = {facing.x, facing.y, facing.z}, g[3] = {flat.x, flat.y, flat.z};
-    const bool through = vitrail_cross(from, n, g, ratio, out) != 0;
-    *d = (float3)(out[0], out[1], out[2]);
-    return through;
-}
-
-static inline float3 optics_absorb(const vitrail_MaterialDesc* m, float length) { return exp(-xyz(m->absorption) * length); }
-
 // Transmittance from a point straight to the light: Beer-Lambert inside, 1 - F at each crossing, 0 behind opaque voxels.
 static __attribute__((unused)) float3 march_transmittance(const Volume* volume, float3 p, float3 toLight, bool inside, uint material) {
     float3 through = (float3)(1.0f);

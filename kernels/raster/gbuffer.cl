@@ -6,6 +6,8 @@
 #include "lib/real.cl"
 #pragma OPENCL FP_CONTRACT OFF
 
+#define FACES_AWAY 1u  // Faces of vitrail/raster/gbuffer.h
+
 typedef struct {
     real x, y, z;
 } Vector;
@@ -37,7 +39,7 @@ static inline void gbuffer_span(real low, real high, float half_, uint count, in
 
 // False: no pixel's centre lies in the triangle's box.
 static inline bool gbuffer_triangle(const vitrail_CameraDesc* camera, global const float* positions, global const uint* indices,
-                                    uint vertexCount, uint triangle, bool second, global uint* depth, global uint* nearest) {
+                                    uint vertexCount, uint faces, uint triangle, bool second, global uint* depth, global uint* nearest) {
     Vector v[3];
     for (int k = 0; k < 3; ++k) {
         const uint i = indices[3 * (size_t)triangle + k];
@@ -94,6 +96,7 @@ static inline bool gbuffer_triangle(const vitrail_CameraDesc* camera, global con
             if (!inside) continue;
             const real slope = flat ? n.z : vector_dot(n, ray);
             if (slope == REAL(0)) continue;  // edge-on
+            if (faces == FACES_AWAY && slope > REAL(0)) continue;  // right, up, forward are left-handed: n is turned around
             const real z = flat ? (d - n.x * ray.x - n.y * ray.y) / slope : d / slope;
             if (!(z > REAL(0)) || z > REAL(1e30f)) continue;
             const uint bits = as_uint((float)z);
@@ -108,11 +111,13 @@ static inline bool gbuffer_triangle(const vitrail_CameraDesc* camera, global con
 
 // boxed: a byte a triangle, 0 where the second pass need not look.
 kernel void gbuffer_depth(const vitrail_CameraDesc camera, global const float* positions, global const uint* indices, uint vertexCount,
-                          global uint* depth, global uchar* boxed, ulong count, uint perItem) {
-    FOR_RANGE(i, count, perItem) boxed[i] = gbuffer_triangle(&camera, positions, indices, vertexCount, (uint)i, false, depth, 0) ? 1 : 0;
+                          uint faces, global uint* depth, global uchar* boxed, ulong count, uint perItem) {
+    FOR_RANGE(i, count, perItem)
+        boxed[i] = gbuffer_triangle(&camera, positions, indices, vertexCount, faces, (uint)i, false, depth, 0) ? 1 : 0;
 }
 
 kernel void gbuffer_nearest(const vitrail_CameraDesc camera, global const float* positions, global const uint* indices, uint vertexCount,
-                            global uint* depth, global const uchar* boxed, global uint* nearest, ulong count, uint perItem) {
-    FOR_RANGE(i, count, perItem) if (boxed[i]) gbuffer_triangle(&camera, positions, indices, vertexCount, (uint)i, true, depth, nearest);
+                            uint faces, global uint* depth, global const uchar* boxed, global uint* nearest, ulong count, uint perItem) {
+    FOR_RANGE(i, count, perItem)
+        if (boxed[i]) gbuffer_triangle(&camera, positions, indices, vertexCount, faces, (uint)i, true, depth, nearest);
 }

@@ -7,6 +7,11 @@
 #pragma OPENCL FP_CONTRACT OFF
 
 #define SURFACE_ONE 1073741824.0f  // 2^30; a part's area is below 1.3
+#ifdef VITRAIL_ONE_PLANE
+#define SURFACE_ONE_PLANE true  // a voxel, without gradient
+#else
+#define SURFACE_ONE_PLANE false
+#endif
 #define SURFACE_GROWN 1e-6f       // by which a cell is larger on each side, so that a triangle in its face lies in it
 #define SURFACE_LEAST 1e-12f      // area, in cells, below which a triangle's part is none
 
@@ -323,7 +328,7 @@ static inline vitrail_SurfaceVoxel surface_pack(const SurfaceSum* sum) {
     const float3 pt = (float3)(dot(own[0], t), dot(own[1], t), dot(own[2], t)), pb = (float3)(dot(own[0], b), dot(own[1], b), dot(own[2], b));
     const float tt = dot(pt, t), tb = dot(pt, b), bb = dot(pb, b), determinant = tt * bb - tb * tb;
     // d n / d t and d n / d b, then their components along t and b.
-    const bool known = shaded && determinant > 1e-12f;
+    const bool known = !SURFACE_ONE_PLANE && shaded && determinant > 1e-12f;
     const float3 dt = known ? (nt * bb - nb * tb) / determinant : (float3)(0.0f), db = known ? (nb * tt - nt * tb) / determinant : (float3)(0.0f);
     const float g[4] = {dot(dt, t), dot(db, t), dot(dt, b), dot(db, b)};
     float most = 0.0f;
@@ -393,7 +398,7 @@ static inline int surface_planes(const SurfaceMesh* mesh, size_t from, size_t en
         }
         if (round == 0) {
             surface_sum(&all, &sums[0]);
-            if (sums[0].area <= 0 || surface_length(&sums[0]) > SURFACE_COHERENT) return 1;
+            if (SURFACE_ONE_PLANE || sums[0].area <= 0 || surface_length(&sums[0]) > SURFACE_COHERENT) return 1;
             continue;
         }
         if (most == 0) break;

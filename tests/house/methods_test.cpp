@@ -1,6 +1,8 @@
 // A row of the table of methods is a header, a host file, a kernel and a test with one stem, reachable by its name, and a line in
 // README.md.
 #include <gtest/gtest.h>
+#include <vitrail/light/glass.h>
+#include <vitrail/light/shadow.h>
 #include <vitrail/methods.h>
 #include <vitrail/voxelize/voxelize.h>
 
@@ -57,6 +59,9 @@ TEST(MethodTable, RowsAreReachableByName) {
         if (isVoxelizer(row)) {
             EXPECT_EQ(name(voxelizerByName(row.name)), row.name);
         }
+        if (row.family == Family::glass) {
+            EXPECT_EQ(std::visit([](const auto& method) { return method.name; }, glassByName(row.name)), row.name);
+        }
     }
     EXPECT_EQ(findMethod("no such method"), nullptr);
 }
@@ -64,7 +69,6 @@ TEST(MethodTable, RowsAreReachableByName) {
 // The table's options are the type's members, with its defaults inside their range.
 TEST(MethodTable, OptionsAreThoseOfTheTypes) {
     for (const Method& row : methods()) {
-        if (!isVoxelizer(row)) continue;
         std::set<std::string> fromTable, fromType;
         for (const MethodOption& option : row.options) {
             if (option.name.empty()) continue;
@@ -73,17 +77,18 @@ TEST(MethodTable, OptionsAreThoseOfTheTypes) {
             EXPECT_LE(option.byDefault, option.most) << row.name;
             EXPECT_FALSE(option.help.empty()) << row.name;
         }
-        std::visit(
-            [&](const auto& method) {
-                std::remove_cvref_t<decltype(method)>::visitOptions(method, [&](std::string_view name, const auto& value) {
-                    fromType.insert(std::string(name));
-                    const auto found = std::find_if(row.options.begin(), row.options.end(),
-                                                    [&](const MethodOption& o) { return o.name == name; });
-                    ASSERT_NE(found, row.options.end()) << name;
-                    EXPECT_EQ(static_cast<double>(value), found->byDefault) << name;
-                });
-            },
-            voxelizerByName(row.name));
+        const auto collect = [&](const auto& method) {
+            std::remove_cvref_t<decltype(method)>::visitOptions(method, [&](std::string_view name, const auto& value) {
+                fromType.insert(std::string(name));
+                const auto found = std::find_if(row.options.begin(), row.options.end(),
+                                                [&](const MethodOption& o) { return o.name == name; });
+                ASSERT_NE(found, row.options.end()) << name;
+                EXPECT_EQ(static_cast<double>(value), found->byDefault) << name;
+            });
+        };
+        if (isVoxelizer(row)) std::visit(collect, voxelizerByName(row.name));
+        if (row.family == Family::glass) std::visit(collect, glassByName(row.name));
+        if (row.family == Family::shadow) std::visit(collect, shadowByName(row.name));
         EXPECT_EQ(fromTable, fromType) << row.name;
     }
 }

@@ -90,7 +90,10 @@ int main() {
         scene.materials = {defaultGlass(scene.mesh.bounds())};
         const Camera camera = Camera::around(scene.mesh.bounds(), 30, 20, 4, 3);
         (void)shade(queue, scene, camera, Glass{.method = Planes{.resolution = 8}, .samples = 1}).picture();
-        (void)glassRays(queue, scene, camera, Exact{.resolution = 8});
+        (void)shade(queue, scene, camera, Glass{.method = Two{.resolution = 8}, .samples = 1}).picture();
+        for (const GlassMethod& method : {GlassMethod(Exact{.resolution = 8}), GlassMethod(One{}), GlassMethod(Two{.thickness = Two::Thickness::image}),
+                                          GlassMethod(Paper{.resolution = 8, .filter = true}), GlassMethod(Plane{.resolution = 8})})
+            (void)glassRays(queue, scene, camera, method);
         (void)shade(queue, scene, camera, Shadow{.method = Planes{.resolution = 8}, .samples = 1}).picture();
         (void)shade(queue, scene, camera, Shadow{.method = Counted{.resolution = 8, .slices = 40}, .samples = 1}).picture();
         (void)shade(queue, scene, camera, Shadow{.method = Uniform{.resolution = 8, .slices = 8}, .samples = 1, .lit = true}).picture();

@@ -1,9 +1,12 @@
 #include "tests/support/fingerprint.h"
 
+#include <vitrail/light/glass.h>
 #include <vitrail/scene/shapes.h>
 #include <vitrail/voxelize/voxelize.h>
 
+#include <algorithm>
 #include <bit>
+#include <cstring>
 
 #include "tests/support/cases.h"
 #include "tests/support/device.h"
@@ -61,6 +64,19 @@ std::string fingerprint(Queue& queue, const Mesh& mesh) {
                 lines += "\n";
             }
         }
+    }
+    Scene scene;
+    scene.mesh = mesh;
+    scene.materials.assign(1 + *std::ranges::max_element(mesh.materials), defaultGlass(bounds));
+    const Camera camera = Camera::around(bounds, 30, 20, 24, 20);
+    for (const Method& row : methods()) {
+        if (row.family != Family::glass) continue;
+        std::vector<std::string> options;
+        if (!row.options[0].name.empty()) options.push_back("resolution=32");
+        const std::vector<vitrail_RayEnd> ends = glassRays(queue, scene, camera, glassByName(row.name, options)).ends;
+        std::vector<std::uint32_t> words(ends.size() * (sizeof(vitrail_RayEnd) / sizeof(std::uint32_t)));
+        std::memcpy(words.data(), ends.data(), words.size() * sizeof(std::uint32_t));
+        lines += std::string(row.name) + hashOf(words) + "\n";
     }
     return lines;
 }

@@ -19,9 +19,15 @@ struct GBuffer {
 /// The camera as the device reads it. Throws Error (badOption): no pixels, view direction parallel to up, field of view out of range.
 vitrail_CameraDesc describe(const Camera& camera);
 
-/// Triangles against pixel centres, both sides, without clipping: homogeneous edge functions (Olano & Greer 1997) in double precision.
-/// Enqueues. Memory: 8 bytes a pixel, and while it works 1 a triangle. Time: triangles, and pixels of their boxes.
-GBuffer rasterize(Queue& queue, const DeviceMesh& mesh, const Camera& camera);
+enum class Faces : std::uint32_t {
+    all,
+    away,  ///< whose normal, by their winding, points along the pixel's ray
+};
+
+/// Triangles against pixel centres, both sides or only those of `faces`, without clipping: homogeneous edge functions (Olano & Greer 1997) in
+/// double precision. Enqueues. Memory: 8 bytes a pixel, and while it works 1 a triangle. Time: triangles, and pixels of their boxes.
+GBuffer rasterize(Queue& queue, const DeviceMesh& mesh, const Camera& camera, Faces faces = Faces::all);
+GBuffer rasterize(Queue& queue, const DeviceMesh& mesh, const vitrail_CameraDesc& camera, Faces faces = Faces::all);
 
 }  // namespace v0
 }  // namespace vitrail

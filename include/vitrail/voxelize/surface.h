@@ -17,8 +17,9 @@ struct SurfaceVoxels {
 /// it has none. Memory beside Conservative's with channels: 16 bytes and two 4-byte cursors an occupied voxel, 4 bytes a fragment, 16 a
 /// plane of those that have more than one, and voxelizeLists' while it works. Centroids are off by less than 1e-3 cell for triangles of up to
 /// 2048 cells (single precision about a point near the cell).
+/// `onePlane`: one plane a voxel and no gradient, to see what the others add.
 /// Throws as voxelize(..., Conservative); Error (unsupported) past 2^32 - 1 fragments.
-SurfaceVoxels voxelizeSurface(Queue& queue, const DeviceMesh& mesh, const Grid& grid);
+SurfaceVoxels voxelizeSurface(Queue& queue, const DeviceMesh& mesh, const Grid& grid, bool onePlane = false);
 
 }  // namespace v0
 }  // namespace vitrail
