@@ -167,6 +167,12 @@ INLINE void run_between(const Bounds* bounds, int lane, real8 v, real8* low, rea
                       fma(LANES_OF(lanes_at(&bounds->highSlope[1], lane)), v, LANES_OF(lanes_at(&bounds->high[1], lane))));
 }
 
+// Those of eight triangles, each at its own place.
+INLINE void run_between_lanes(const Bounds* bounds, real8 v, real8* low, real8* high) {
+    *low = lanes_max(fma(bounds->lowSlope[0], v, bounds->low[0]), fma(bounds->lowSlope[1], v, bounds->low[1]));
+    *high = lanes_min(fma(bounds->highSlope[0], v, bounds->high[0]), fma(bounds->highSlope[1], v, bounds->high[1]));
+}
+
 // The runs there: first and end, within [least, most].
 INLINE void run_bounds(const Bounds* bounds, int lane, real8 v, real least, real most, int8* first, int8* end) {
     real8 low, high;
