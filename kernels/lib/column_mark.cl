@@ -130,10 +130,9 @@ INLINE void column_mark_lanes(BitsQueue* queue, uint8 tile, uint8 inTile, uint8 
 }
 
 // The same by the same numbers for those of eight triangles that are `small` (-1), at most 31 cells high: a column of each at a time.
-INLINE void column_lanes(bool thin, const Runs* runs, int8 small, const Mark* mark) {
+INLINE void column_lanes(const Runs* runs, int8 small, const Mark* mark) {
     const int8 width = (runs->last[0] - runs->first[0] + 1) & small, depth = (runs->last[1] - runs->first[1] + 1) & small;
     const int8 height = runs->last[2] - runs->first[2] + 1;
-    const int8 whole = thin ? (int8)(0) : (width == 1) & (depth == 1) & ((runs->state & RUN_CLIPPED) == 0);
     const real8 none = LANES_OF(0), most = LANES_REAL(height);
     const uint8 shift = as_uint8(runs->first[2]) & 31u, block = as_uint8(runs->first[2]) >> 5;
     const bool across = lanes_int_least(as_int8(shift) + height > 32) != 0;
@@ -150,11 +149,11 @@ INLINE void column_lanes(bool thin, const Runs* runs, int8 small, const Mark* ma
             run_between_lanes(&runs->zOfX, LANES_OF(i), &columnLow, &columnHigh);
             const real8 low = fma(runs->planeX, LANES_OF(i), planeLow), high = fma(runs->planeX, LANES_OF(i), planeHigh);
             const real8 from = lanes_max(lanes_max(low, columnLow), rowLow), to = lanes_min(lanes_min(high, columnHigh), rowHigh);
-            const int8 first = lanes_int(lanes_min(lanes_max(from, none), most)) & ~whole;
-            const int8 end = whole ? height : lanes_int(lanes_min(lanes_max(to, none), most));
+            const int8 first = lanes_int(lanes_min(lanes_max(from, none), most));
+            const int8 end = lanes_int(lanes_min(lanes_max(to, none), most));
             const int8 within = LANES_TRUE(xLow < LANES_OF(i + 1)) & LANES_TRUE(xHigh >= LANES_OF(i + 1));
             const uint8 ones = (uint8)(0xffffffffu);
-            const uint8 mask = (ones << as_uint8(first)) & ~(ones << as_uint8(end)) & as_uint8((within | whole) & (width > i) & (depth > j));
+            const uint8 mask = (ones << as_uint8(first)) & ~(ones << as_uint8(end)) & as_uint8(within & (width > i) & (depth > j));
             const uint8 x = as_uint8(min(runs->first[0] + i, runs->last[0]));
             const uint8 tile = ((y >> 3) * mark->grid->tilesX + (x >> 3)) * mark->grid->size.w + block, inTile = (y & 7u) * 8u + (x & 7u);
             column_mark_lanes(mark->queue, tile, inTile, mask << shift);
@@ -167,7 +166,7 @@ INLINE void column_lanes(bool thin, const Runs* runs, int8 small, const Mark* ma
 }
 
 // One of eight triangles, or one block of it when it is big (block >= 0).
-INLINE void column_triangle(bool thin, const Runs* runs, int lane, global const float* positions, global const uint* indices, uint vertexCount,
+INLINE void column_triangle(const Runs* runs, int lane, global const float* positions, global const uint* indices, uint vertexCount,
                                   int block, Mark* mark, global uint2* tasks, uint taskCapacity,
                                   global uint* status) {
     const int state = lanes_int_at(&runs->state, lane);
@@ -177,14 +176,8 @@ INLINE void column_triangle(bool thin, const Runs* runs, int lane, global const 
     if (!(state & RUN_INSIDE)) return;
     int xLeast = lanes_int_at(&runs->first[0], lane), xMost = lanes_int_at(&runs->last[0], lane);
     int yLeast = lanes_int_at(&runs->first[1], lane), yMost = lanes_int_at(&runs->last[1], lane);
-    const int zLeast = lanes_int_at(&runs->first[2], lane), zMost = lanes_int_at(&runs->last[2], lane);
-    // Within one column a triangle touches every cell of its box.
-    if (!thin && !mark->channels && !(state & RUN_CLIPPED) && xLeast == xMost && yLeast == yMost) {
-        bits_set_run(&mark->bits, mark->grid, (uint)xLeast, (uint)yLeast, (uint)zLeast, (uint)zMost);
-        return;
-    }
-    const int width = xMost - xLeast + 1, depth = yMost - yLeast + 1;
-    if (!mark->channels && width <= COLUMN_SMALL && depth <= COLUMN_SMALL && zMost - zLeast < 31) {
+    const int width = xMost - xLeast + 1, depth = yMost - yLeast + 1, height = lanes_int_at(&runs->last[2], lane) + 1 - lanes_int_at(&runs->first[2], lane);
+    if (!mark->channels && width <= COLUMN_SMALL && depth <= COLUMN_SMALL && height <= 31) {
         column_blocks(runs, lane, xLeast, xMost, yLeast, yMost, mark);
         return;
     }
@@ -200,7 +193,7 @@ INLINE void column_triangle(bool thin, const Runs* runs, int lane, global const 
 // Which of eight triangles (-1) are done side by side.
 INLINE int8 column_small(const Runs* runs) {
     return (runs->last[0] - runs->first[0] < COLUMN_LANES) & (runs->last[1] - runs->first[1] < COLUMN_LANES) &
-           (runs->last[2] - runs->first[2] < 31) & ((runs->state & ~RUN_CLIPPED) == RUN_INSIDE);
+           (runs->last[2] - runs->first[2] < 31) & (runs->state == RUN_INSIDE);
 }
 
 #define COLUMN_MARK(thin)                                                                                                            \
@@ -217,11 +210,11 @@ INLINE int8 column_small(const Runs* runs) {
         Runs runs;                                                                                                                   \
         run_setup(thin, &grid, positions, indices, vertexCount, triangles, live, &runs);                                             \
         const int8 small = rank || groups ? (int8)(0) : column_small(&runs);                                                         \
-        if (lanes_int_least(small) != 0) column_lanes(thin, &runs, small, &mark);                                                    \
+        if (lanes_int_least(small) != 0) column_lanes(&runs, small, &mark);                                                          \
         for (int lane = 0; lane < LANES; ++lane) {                                                                                   \
             if (lanes_int_at(&small, lane) != 0) continue;                                                                           \
             mark.triangle = triangles[lane];                                                                                         \
-            column_triangle(thin, &runs, lane, positions, indices, vertexCount, blocks[lane], &mark, tasks, taskCapacity, status);   \
+            column_triangle(&runs, lane, positions, indices, vertexCount, blocks[lane], &mark, tasks, taskCapacity, status);         \
         }                                                                                                                            \
     })                                                                                                                               \
     bits_flush(&bits, &queue);
