@@ -257,10 +257,10 @@ void fillSmall(const Batch& b, const Ints& small, std::int32_t beginY, std::int3
             const Ints first = toInts(least(low, highest)) - z0, end = toInts(most(high, lowest)) - z0;
             const Ints in = (x >= xFirst) & (x < xEnd) & (i < width) & (j < rows) & (first < end);
             const Words mask = (ones << Words(first & 31)) & (ones >> Words(-end & 31)) & Words(in);
-            const Ints word = small & (((((y - beginY) >> 3) * tilesX + (x >> 3)) * tilesZ + (z0 >> 5)) * 64 + (y & 7) * 8 + (x & 7));
+            const Ints word =
+                small & (((((y - beginY) >> 3) * tilesX + (x >> 3)) * tilesZ + (z0 >> 5)) * 64 + (y & 7) * 8 + (x & 7));
             const Words lower = mask << Words(shift);
-            for (int l = 0; l < 8; ++l)
-                words[word[l]] |= lower[l];
+            for (int l = 0; l < 8; ++l) words[word[l]] |= lower[l];
             if (!across) continue;
             const Words upper = mask >> Words((32 - shift) & 31) & Words(shift != 0);
             for (int l = 0; l < 8; ++l)
