@@ -18,11 +18,10 @@ typedef struct {
     Share share;
 } Mark;
 
-// Marks cells of four columns in a tile.
+// Marks cells of four columns in a tile, where there is room.
 INLINE void column_mark_half(const Mark* mark, size_t tile, uint inTile, uint4 mask) {
     BitsQueue* queue = mark->queue;
     const ulong pair = bits_pair(tile, inTile);
-    bits_room(&mark->bits, queue, 2u);
     bits_expect(&mark->bits, pair);
     vstore2(pair + (ulong2)(0, 1), 0, queue->pair + queue->count);
     vstore2(as_ulong2(mask), 0, queue->mask + queue->count);
@@ -112,6 +111,7 @@ INLINE void column_blocks(const Runs* runs, int lane, int xLeast, int xMost, int
             const uint odd = y < yMost ? (uint)y + 1u : (uint)y;
             const size_t one = bits_tile(mark->grid, (uint)x, (uint)y) + ((uint)z0 >> 5);
             const size_t two = bits_tile(mark->grid, (uint)x, odd) + ((uint)z0 >> 5);
+            bits_room(&mark->bits, mark->queue, 8u);
             const uint inOne = bits_in_tile((uint)x, (uint)y), inTwo = bits_in_tile((uint)x, odd);
             column_mark_half(mark, one, inOne, mask.lo << shift);
             column_mark_half(mark, two, inTwo, mask.hi << shift);
