@@ -7,12 +7,14 @@
 
 #define COLUMN_SMALL 8  // columns along x and y of a triangle that is done in blocks of four by two
 #define COLUMN_LANES 4  // of one that is done beside seven others, a lane each
+#define COLUMN_NEAR 2048  // tiles whose words, half a MiB, stay in a core's cache
 
 // Where the cells of one triangle go.
 typedef struct {
     const vitrail_GridDesc* grid;
     Bits bits;                 // unless there are channels
     BitsQueue* queue;
+    bool near;                 // words are in the cache: an atomic costs less than to look first
     const Channels* channels;
     uint triangle;
     Share share;
@@ -22,6 +24,12 @@ typedef struct {
 INLINE void column_mark_half(const Mark* mark, size_t tile, uint inTile, uint4 mask) {
     BitsQueue* queue = mark->queue;
     const ulong pair = bits_pair(tile, inTile);
+    if (mark->near) {
+        const ulong2 two = as_ulong2(mask);
+        if (two.x != 0ul) bits_or_pair(mark->bits.words + 2u * pair, two.x);
+        if (two.y != 0ul) bits_or_pair(mark->bits.words + 2u * pair + 2u, two.y);
+        return;
+    }
     bits_expect(&mark->bits, pair);
     vstore2(pair + (ulong2)(0, 1), 0, queue->pair + queue->count);
     vstore2(as_ulong2(mask), 0, queue->mask + queue->count);
@@ -204,6 +212,7 @@ INLINE int8 column_small(const Runs* runs) {
     Mark mark;                                                                                                                       \
     mark.grid = &grid;                                                                                                               \
     mark.bits = bits;                                                                                                                \
+    mark.near = !bricks && (ulong)grid.tilesX * ((grid.size.y + 7u) / 8u) * grid.size.w <= COLUMN_NEAR;                              \
     mark.queue = &queue;                                                                                                             \
     mark.channels = rank ? &channels : 0;                                                                                            \
     MARK_EIGHTS(triangles, blocks, live, {                                                                                           \
