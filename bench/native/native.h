@@ -15,6 +15,9 @@
 #include <span>
 #include <thread>
 #include <vector>
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
 
 namespace vitrail::native {
 
@@ -24,15 +27,22 @@ struct Grid {
     std::array<std::uint32_t, 3> size;  // 1 to 2^24 cells along an axis
 };
 
-// Words on cache lines: rows of eight words then never straddle two.
+// Words on cache lines: rows of eight words then never straddle two. Many lie in pages of 2 MiB where the system has them.
 template <class T>
 struct LineAllocator {
     using value_type = T;
     LineAllocator() = default;
     template <class U>
     LineAllocator(const LineAllocator<U>&) {}
-    T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), std::align_val_t(64))); }
-    void deallocate(T* p, std::size_t) { ::operator delete(p, std::align_val_t(64)); }
+    static std::align_val_t alignment(std::size_t n) { return std::align_val_t(n * sizeof(T) >= (16u << 20) ? 2u << 20 : 64u); }
+    T* allocate(std::size_t n) {
+        void* p = ::operator new(n * sizeof(T), alignment(n));
+#if defined(__linux__)
+        if (alignment(n) != std::align_val_t(64)) madvise(p, n * sizeof(T), MADV_HUGEPAGE);
+#endif
+        return static_cast<T*>(p);
+    }
+    void deallocate(T* p, std::size_t n) { ::operator delete(p, alignment(n)); }
     friend bool operator==(LineAllocator, LineAllocator) { return true; }
 };
 

@@ -101,7 +101,7 @@ def main():
     grids = list(dict.fromkeys((p.mesh, p.resolution) for p in points))
 
     head = ("mesh", "resolution", "triangles", f"{options.method} kernel ms", "wall ms", "separating axis ms", "edge runs ms",
-            "kernel / s.axis", "kernel / edge runs", "wall / edge runs")
+            "kernel / s.axis", "kernel / edge runs", "wall / edge runs", "kernel / limit")
     rows, ratios = [], {"axis": [], "runs": [], "wall": []}
     for mesh, resolution in grids:
         ours = by_key.get((mesh, resolution, options.method))
@@ -112,13 +112,13 @@ def main():
         ratios["runs"].append(ours.kernel_ms / runs.kernel_ms)
         ratios["wall"].append(ours.wall_ms / runs.kernel_ms)
         rows.append((mesh, str(resolution), str(ours.triangles), f"{ours.kernel_ms:.3g}", f"{ours.wall_ms:.3g}", f"{axis.kernel_ms:.3g}",
-                     f"{runs.kernel_ms:.3g}", f"{ratios['axis'][-1]:.2f}", f"{ratios['runs'][-1]:.2f}", f"{ratios['wall'][-1]:.2f}"))
+                     f"{runs.kernel_ms:.3g}", f"{ratios['axis'][-1]:.2f}", f"{ratios['runs'][-1]:.2f}", f"{ratios['wall'][-1]:.2f}", f"{ours.kernel_ms / ours.limit_ms:.1f}" if ours.limit_ms > 0 else "-"))
     if not any(p.method == options.method for p in points):
         raise SystemExit(f"no measurement of {options.method}")
     print(f"{options.method}, medians of one run; {records.machine_text(machine)}")
     if rows:
         rows.append(("geometric mean", "", "", "", "", "", "",
-                     *(f"{math.exp(sum(map(math.log, r)) / len(r)):.2f}" for r in ratios.values())))
+                     *(f"{math.exp(sum(map(math.log, r)) / len(r)):.2f}" for r in ratios.values()), ""))
         table("the native lines", head, rows)
     print_peers(points, grids, options.method)
     methods = list(dict.fromkeys(p.method for p in points))

@@ -64,25 +64,59 @@ INLINE uint8 bits_masks(int8 first, int8 end) {
     return (ones << as_uint8(from & 31)) & (ones >> as_uint8(-to & 31)) & as_uint8(from < to);
 }
 
-// ORs four neighbours, half a row of a tile. `often`: most of these bits are likely to be there; looking costs less than an atomic then.
-// What it sees may be old: bits only ever appear.
-INLINE void bits_set_half(global uint* words, uint4 mask, bool often) {
-    if (BITS_LOOK && often) mask &= ~*(const global uint4*)words;
-#ifdef cl_khr_int64_extended_atomics
-    volatile global ulong* pairs = (volatile global ulong*)words;
-    const ulong2 two = as_ulong2(mask);
-    if (two.s0 != 0ul) atom_or(pairs, two.s0);
-    if (two.s1 != 0ul) atom_or(pairs + 1, two.s1);
+// Bits to set, gathered first: what they meet in memory is on its way by the time it is looked at, and no look waits for an atomic. Words go
+// in pairs, of columns 2 k and 2 k + 1, numbered tile by tile whether tiles have bricks or not.
+#define BITS_QUEUE 512
+#define BITS_PAIRS_PER_TILE (VITRAIL_WORDS_PER_TILE / 2)
+typedef struct {
+    uint count;
+    ulong pair[BITS_QUEUE];
+    ulong mask[BITS_QUEUE];
+} BitsQueue;
+
+INLINE ulong bits_pair(size_t tile, uint inTile) { return (ulong)tile * BITS_PAIRS_PER_TILE + inTile / 2u; }
+
+// Asks for the memory of a pair. OpenCL's prefetch() is nothing in PoCL 3.1.
+INLINE void bits_expect(const Bits* to, ulong pair) {
+#ifdef __x86_64__
+    if (!to->bricks) __builtin_prefetch((const void*)(size_t)(to->words + 2u * pair), 1, 3);
 #else
-    for (int i = 0; i < 4; ++i)
-        if (((uint*)&mask)[i] != 0u) atomic_or(words + i, ((uint*)&mask)[i]);
+    (void)to, (void)pair;
 #endif
 }
 
-// The same for eight, a row of a tile.
-INLINE void bits_set_row(global uint* words, uint8 mask, bool often) {
-    bits_set_half(words, mask.lo, often);
-    bits_set_half(words + 4, mask.hi, often);
+INLINE void bits_or_pair(global uint* words, ulong mask) {
+#ifdef cl_khr_int64_extended_atomics
+    atom_or((volatile global ulong*)words, mask);
+#else
+    const uint2 two = as_uint2(mask);
+    if (two.s0 != 0u) atomic_or(words, two.s0);
+    if (two.s1 != 0u) atomic_or(words + 1, two.s1);
+#endif
+}
+
+// Sets what is queued. A look may see old memory: bits only ever appear.
+INLINE void bits_flush(const Bits* to, BitsQueue* queue) {
+    uint left = 0u;
+    for (uint i = 0; i < queue->count; ++i) {
+        ulong pair = queue->pair[i], mask = queue->mask[i];
+        if (to->bricks) {
+            global uint* words;
+            if (mask == 0ul || !bits_open(to, pair / BITS_PAIRS_PER_TILE, &words)) continue;
+            pair = (ulong)(words - to->words) / 2u + pair % BITS_PAIRS_PER_TILE;
+        }
+        if (BITS_LOOK) mask &= ~((global const ulong*)to->words)[pair];
+        queue->pair[left] = pair;
+        queue->mask[left] = mask;
+        left += mask != 0ul ? 1u : 0u;
+    }
+    for (uint i = 0; i < left; ++i) bits_or_pair(to->words + 2u * queue->pair[i], queue->mask[i]);
+    queue->count = 0u;
+}
+
+// Makes room for `count` more.
+INLINE void bits_room(const Bits* to, BitsQueue* queue, uint count) {
+    if (queue->count + count > BITS_QUEUE) bits_flush(to, queue);
 }
 
 // ORs bits that are likely to be there.

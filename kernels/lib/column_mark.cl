@@ -5,35 +5,49 @@
 #include "lib/mark.cl"
 #pragma OPENCL FP_CONTRACT OFF
 
-#define COLUMN_FEW 4    // a triangle over so few columns is smaller than a voxel or two, and its neighbours share most of its cells
 #define COLUMN_SMALL 8  // columns along x and y of a triangle that is done in blocks of four by two
+#define COLUMN_LANES 4  // of one that is done beside seven others, a lane each
+#define COLUMN_NEAR 2048  // tiles whose words, half a MiB, stay in a core's cache
 
 // Where the cells of one triangle go.
 typedef struct {
     const vitrail_GridDesc* grid;
     Bits bits;                 // unless there are channels
+    BitsQueue* queue;
+    bool near;                 // words are in the cache: an atomic costs less than to look first
     const Channels* channels;
     uint triangle;
     Share share;
 } Mark;
 
-// Marks cells of four columns in a tile.
-INLINE void column_mark_half(const Mark* mark, size_t tile, uint inTile, uint4 mask, const bool often) {
-    global uint* words;
-    if (mark->bits.words || any(mask != 0u))
-        if (bits_open(&mark->bits, tile, &words)) bits_set_half(words + inTile, mask, often);
+// Marks cells of four columns in a tile, where there is room.
+INLINE void column_mark_half(const Mark* mark, size_t tile, uint inTile, uint4 mask) {
+    BitsQueue* queue = mark->queue;
+    const ulong pair = bits_pair(tile, inTile);
+    if (mark->near) {
+        const ulong2 two = as_ulong2(mask);
+        if (two.x != 0ul) bits_or_pair(mark->bits.words + 2u * pair, two.x);
+        if (two.y != 0ul) bits_or_pair(mark->bits.words + 2u * pair + 2u, two.y);
+        return;
+    }
+    bits_expect(&mark->bits, pair);
+    vstore2(pair + (ulong2)(0, 1), 0, queue->pair + queue->count);
+    vstore2(as_ulong2(mask), 0, queue->mask + queue->count);
+    queue->count += 2u;
 }
 
 // Marks slices [first, end) of eight columns, x from a multiple of eight on; zFirst <= them < zEnd.
-INLINE void column_mark_row(const Mark* mark, int x, int y, int8 first, int8 end, int zFirst, int zEnd,
-                                  const bool often) {
+INLINE void column_mark_row(const Mark* mark, int x, int y, int8 first, int8 end, int zFirst, int zEnd) {
     if (!mark->channels) {
         const size_t tile = bits_tile(mark->grid, (uint)x, (uint)y);
         for (int block = zFirst >> 5; block <= (zEnd - 1) >> 5; ++block) {
-            const uint8 mask = bits_masks(first - block * 32, end - block * 32);
-            global uint* words;
-            if (mark->bits.words || any(mask != 0u))
-                if (bits_open(&mark->bits, tile + (size_t)block, &words)) bits_set_row(words + bits_in_tile((uint)x, (uint)y), mask, often);
+            BitsQueue* queue = mark->queue;
+            const ulong pair = bits_pair(tile + (size_t)block, bits_in_tile((uint)x, (uint)y));
+            bits_room(&mark->bits, queue, 4u);
+            bits_expect(&mark->bits, pair);
+            vstore4(pair + (ulong4)(0, 1, 2, 3), 0, queue->pair + queue->count);
+            vstore4(as_ulong4(bits_masks(first - block * 32, end - block * 32)), 0, queue->mask + queue->count);
+            queue->count += 4u;
         }
         return;
     }
@@ -44,8 +58,7 @@ INLINE void column_mark_row(const Mark* mark, int x, int y, int8 first, int8 end
 }
 
 // Marks the cells of the triangle in `lane` in columns [xLeast, xMost] x [yLeast, yMost].
-INLINE void column_columns(const Runs* runs, int lane, int xLeast, int xMost, int yLeast, int yMost, const Mark* mark,
-                                 const bool often) {
+INLINE void column_columns(const Runs* runs, int lane, int xLeast, int xMost, int yLeast, int yMost, const Mark* mark) {
     const int x0 = lanes_int_at(&runs->first[0], lane), y0 = lanes_int_at(&runs->first[1], lane), z0 = lanes_int_at(&runs->first[2], lane);
     const int height = lanes_int_at(&runs->last[2], lane) + 1 - z0;
     const real planeX = lanes_at(&runs->planeX, lane), planeY = lanes_at(&runs->planeY, lane);
@@ -72,14 +85,14 @@ INLINE void column_columns(const Runs* runs, int lane, int xLeast, int xMost, in
                 const int8 highInt = lanes_int(lanes_min(lanes_max(high, LANES_OF(0)), LANES_OF(height)));
                 const int8 from = max(max(lowInt, first), (int8)(rowLow));
                 const int8 to = min(min(highInt, end), (int8)(rowHigh)) & (columnsInt >= rowFirst) & (columnsInt < rowEnd);
-                column_mark_row(mark, tile, group + row, from + z0, to + z0, z0 + rowLow, z0 + rowHigh, often);
+                column_mark_row(mark, tile, group + row, from + z0, to + z0, z0 + rowLow, z0 + rowHigh);
             }
         }
     }
 }
 
 // The same, by the same numbers, for a triangle at most 31 cells high over few columns: four columns of two rows at a time.
-INLINE void column_blocks(const Runs* runs, int lane, int xLeast, int xMost, int yLeast, int yMost, const Mark* mark, const bool often) {
+INLINE void column_blocks(const Runs* runs, int lane, int xLeast, int xMost, int yLeast, int yMost, const Mark* mark) {
     const int x0 = lanes_int_at(&runs->first[0], lane), y0 = lanes_int_at(&runs->first[1], lane), z0 = lanes_int_at(&runs->first[2], lane);
     const int height = lanes_int_at(&runs->last[2], lane) + 1 - z0;
     const real planeX = lanes_at(&runs->planeX, lane), planeY = lanes_at(&runs->planeY, lane);
@@ -106,18 +119,62 @@ INLINE void column_blocks(const Runs* runs, int lane, int xLeast, int xMost, int
             const uint odd = y < yMost ? (uint)y + 1u : (uint)y;
             const size_t one = bits_tile(mark->grid, (uint)x, (uint)y) + ((uint)z0 >> 5);
             const size_t two = bits_tile(mark->grid, (uint)x, odd) + ((uint)z0 >> 5);
+            bits_room(&mark->bits, mark->queue, 8u);
             const uint inOne = bits_in_tile((uint)x, (uint)y), inTwo = bits_in_tile((uint)x, odd);
-            column_mark_half(mark, one, inOne, mask.lo << shift, often);
-            column_mark_half(mark, two, inTwo, mask.hi << shift, often);
+            column_mark_half(mark, one, inOne, mask.lo << shift);
+            column_mark_half(mark, two, inTwo, mask.hi << shift);
             if (shift + (uint)height > 32u) {
-                column_mark_half(mark, one + 1, inOne, mask.lo >> (32u - shift), often);
-                column_mark_half(mark, two + 1, inTwo, mask.hi >> (32u - shift), often);
+                column_mark_half(mark, one + 1, inOne, mask.lo >> (32u - shift));
+                column_mark_half(mark, two + 1, inTwo, mask.hi >> (32u - shift));
             }
         }
 }
 
+// Marks cells of a column of each of eight triangles.
+INLINE void column_mark_lanes(BitsQueue* queue, uint8 tile, uint8 inTile, uint8 mask) {
+    vstore8(convert_ulong8(tile) * BITS_PAIRS_PER_TILE + convert_ulong8(inTile >> 1), 0, queue->pair + queue->count);
+    vstore8(convert_ulong8(mask) << convert_ulong8((inTile & 1u) * 32u), 0, queue->mask + queue->count);
+    queue->count += LANES;
+}
+
+// The same by the same numbers for those of eight triangles that are `small` (-1), at most 31 cells high: a column of each at a time.
+INLINE void column_lanes(const Runs* runs, int8 small, const Mark* mark) {
+    const int8 width = (runs->last[0] - runs->first[0] + 1) & small, depth = (runs->last[1] - runs->first[1] + 1) & small;
+    const int8 height = runs->last[2] - runs->first[2] + 1;
+    const real8 none = LANES_OF(0), most = LANES_REAL(height);
+    const uint8 shift = as_uint8(runs->first[2]) & 31u, block = as_uint8(runs->first[2]) >> 5;
+    const bool across = lanes_int_least(as_int8(shift) + height > 32) != 0;
+    const int widest = -lanes_int_least(-width), deepest = -lanes_int_least(-depth);
+    bits_room(&mark->bits, mark->queue, (uint)(widest * deepest * LANES * (across ? 2 : 1)));
+    for (int j = 0; j < deepest; ++j) {
+        real8 xLow, xHigh, rowLow, rowHigh;
+        run_between_lanes(&runs->xOfY, LANES_OF(j), &xLow, &xHigh);
+        run_between_lanes(&runs->zOfY, LANES_OF(j), &rowLow, &rowHigh);
+        const real8 planeLow = fma(runs->planeY, LANES_OF(j), runs->planeLow), planeHigh = fma(runs->planeY, LANES_OF(j), runs->planeHigh);
+        const uint8 y = as_uint8(min(runs->first[1] + j, runs->last[1]));
+        for (int i = 0; i < widest; ++i) {
+            real8 columnLow, columnHigh;
+            run_between_lanes(&runs->zOfX, LANES_OF(i), &columnLow, &columnHigh);
+            const real8 low = fma(runs->planeX, LANES_OF(i), planeLow), high = fma(runs->planeX, LANES_OF(i), planeHigh);
+            const real8 from = lanes_max(lanes_max(low, columnLow), rowLow), to = lanes_min(lanes_min(high, columnHigh), rowHigh);
+            const int8 first = lanes_int(lanes_min(lanes_max(from, none), most));
+            const int8 end = lanes_int(lanes_min(lanes_max(to, none), most));
+            const int8 within = LANES_TRUE(xLow < LANES_OF(i + 1)) & LANES_TRUE(xHigh >= LANES_OF(i + 1));
+            const uint8 ones = (uint8)(0xffffffffu);
+            const uint8 mask = (ones << as_uint8(first)) & ~(ones << as_uint8(end)) & as_uint8(within & (width > i) & (depth > j));
+            const uint8 x = as_uint8(min(runs->first[0] + i, runs->last[0]));
+            const uint8 tile = ((y >> 3) * mark->grid->tilesX + (x >> 3)) * mark->grid->size.w + block, inTile = (y & 7u) * 8u + (x & 7u);
+            column_mark_lanes(mark->queue, tile, inTile, mask << shift);
+            if (across) {
+                const uint8 over = as_uint8(as_int8(shift) + height > 32);
+                column_mark_lanes(mark->queue, tile - over, inTile, (mask >> (32u - shift)) & over);
+            }
+        }
+    }
+}
+
 // One of eight triangles, or one block of it when it is big (block >= 0).
-INLINE void column_triangle(bool thin, const Runs* runs, int lane, global const float* positions, global const uint* indices, uint vertexCount,
+INLINE void column_triangle(const Runs* runs, int lane, global const float* positions, global const uint* indices, uint vertexCount,
                                   int block, Mark* mark, global uint2* tasks, uint taskCapacity,
                                   global uint* status) {
     const int state = lanes_int_at(&runs->state, lane);
@@ -127,15 +184,9 @@ INLINE void column_triangle(bool thin, const Runs* runs, int lane, global const 
     if (!(state & RUN_INSIDE)) return;
     int xLeast = lanes_int_at(&runs->first[0], lane), xMost = lanes_int_at(&runs->last[0], lane);
     int yLeast = lanes_int_at(&runs->first[1], lane), yMost = lanes_int_at(&runs->last[1], lane);
-    const int zLeast = lanes_int_at(&runs->first[2], lane), zMost = lanes_int_at(&runs->last[2], lane);
-    // Within one column a triangle touches every cell of its box.
-    if (!thin && !mark->channels && !(state & RUN_CLIPPED) && xLeast == xMost && yLeast == yMost) {
-        bits_set_run(&mark->bits, mark->grid, (uint)xLeast, (uint)yLeast, (uint)zLeast, (uint)zMost);
-        return;
-    }
-    const int width = xMost - xLeast + 1, depth = yMost - yLeast + 1;
-    if (!mark->channels && width <= COLUMN_SMALL && depth <= COLUMN_SMALL && zMost - zLeast < 31) {
-        column_blocks(runs, lane, xLeast, xMost, yLeast, yMost, mark, width * depth <= COLUMN_FEW);
+    const int width = xMost - xLeast + 1, depth = yMost - yLeast + 1, height = lanes_int_at(&runs->last[2], lane) + 1 - lanes_int_at(&runs->first[2], lane);
+    if (!mark->channels && width <= COLUMN_SMALL && depth <= COLUMN_SMALL && height <= 31) {
+        column_blocks(runs, lane, xLeast, xMost, yLeast, yMost, mark);
         return;
     }
     if (tasks_columns(&xLeast, &xMost, &yLeast, &yMost, block, tasks, taskCapacity, status, mark->triangle)) return;
@@ -144,29 +195,40 @@ INLINE void column_triangle(bool thin, const Runs* runs, int lane, global const 
         triangle_corners(positions, indices, vertexCount, mark->triangle, corner);
         channels_share(mark->channels, mark->grid, positions, corner, mark->triangle, &mark->share);
     }
-    if ((xMost - xLeast + 1) * (yMost - yLeast + 1) <= COLUMN_FEW)
-        column_columns(runs, lane, xLeast, xMost, yLeast, yMost, mark, true);
-    else
-        column_columns(runs, lane, xLeast, xMost, yLeast, yMost, mark, false);
+    column_columns(runs, lane, xLeast, xMost, yLeast, yMost, mark);
+}
+
+// Which of eight triangles (-1) are done side by side.
+INLINE int8 column_small(const Runs* runs) {
+    return (runs->last[0] - runs->first[0] < COLUMN_LANES) & (runs->last[1] - runs->first[1] < COLUMN_LANES) &
+           (runs->last[2] - runs->first[2] < 31) & (runs->state == RUN_INSIDE);
 }
 
 #define COLUMN_MARK(thin)                                                                                                            \
     const Channels channels = MARK_CHANNELS;                                                                                         \
     const Bits bits = MARK_BITS;                                                                                                     \
+    BitsQueue queue;                                                                                                                 \
+    queue.count = 0u;                                                                                                                \
     Mark mark;                                                                                                                       \
     mark.grid = &grid;                                                                                                               \
     mark.bits = bits;                                                                                                                \
+    mark.near = !bricks && (ulong)grid.tilesX * ((grid.size.y + 7u) / 8u) * grid.size.w <= COLUMN_NEAR;                              \
+    mark.queue = &queue;                                                                                                             \
     mark.channels = rank ? &channels : 0;                                                                                            \
     uint places[2] = {0u, 0u};                                                                                                       \
     mark.share.places = places;                                                                                                      \
     MARK_EIGHTS(triangles, blocks, live, {                                                                                           \
         Runs runs;                                                                                                                   \
         run_setup(thin, &grid, positions, indices, vertexCount, triangles, live, &runs);                                             \
+        const int8 small = rank || groups ? (int8)(0) : column_small(&runs);                                                         \
+        if (lanes_int_least(small) != 0) column_lanes(&runs, small, &mark);                                                          \
         for (int lane = 0; lane < LANES; ++lane) {                                                                                   \
+            if (lanes_int_at(&small, lane) != 0) continue;                                                                           \
             mark.triangle = triangles[lane];                                                                                         \
-            column_triangle(thin, &runs, lane, positions, indices, vertexCount, blocks[lane], &mark, tasks, taskCapacity, status);   \
+            column_triangle(&runs, lane, positions, indices, vertexCount, blocks[lane], &mark, tasks, taskCapacity, status);         \
         }                                                                                                                            \
     })                                                                                                                               \
-    channels_close(&channels, places);
+    channels_close(&channels, places);                                                                                               \
+    bits_flush(&bits, &queue);
 
 #endif

@@ -25,7 +25,6 @@
 #define RUN_OUTSIDE 2
 #define RUN_SKIPPED 4     // an index past the vertices, or a vertex that is not finite
 #define RUN_DEGENERATE 8  // no area; marked all the same
-#define RUN_CLIPPED 16    // the grid cuts its box along x or y
 
 // u at v lies between the greater of low + lowSlope v and the lesser of high + highSlope v, the latter exclusive.
 typedef struct {
@@ -103,11 +102,10 @@ INLINE void run_sort(real8 v[3], real8 a[3], real8 b[3]) {
 }
 
 // Cells that corners v meet along an axis; what lies exactly on the upper face belongs to the last. Returns where there are any.
-INLINE int8 run_extent(const real8 v[3], uint size, real8 slack, int8* first, int8* last, int8* clipped) {
+INLINE int8 run_extent(const real8 v[3], uint size, real8 slack, int8* first, int8* last) {
     const real8 least = lanes_min3(v[0], v[1], v[2]), most = lanes_max3(v[0], v[1], v[2]), end = LANES_OF(size - 1u);
     *first = lanes_int(lanes_min(lanes_max(least - slack, LANES_OF(0)), end));
     *last = lanes_int(lanes_min(lanes_max(most + slack, LANES_OF(0)), end));
-    *clipped = LANES_TRUE(least < LANES_OF(0)) | LANES_TRUE(most > LANES_OF(size));
     return LANES_TRUE(most >= LANES_OF(0)) & LANES_TRUE(least <= LANES_OF(size));
 }
 
@@ -121,10 +119,9 @@ INLINE void run_setup(bool thin, const vitrail_GridDesc* grid, global const floa
     const real size = REAL(max(grid->size.x, max(grid->size.y, grid->size.z)));
     const real8 delta = lanes_max(lanes_max3(run_most(x), run_most(y), run_most(z)), LANES_OF(size)) * LANES_OF(REAL_EPSILON);
     const real8 margin = LANES_OF(8) * delta, slack = RUN_BOX_SLACK * delta;
-    int8 clippedX, clippedY, clippedZ;
-    const int8 inside = run_extent(x, grid->size.x, slack, &runs->first[0], &runs->last[0], &clippedX) &
-                        run_extent(y, grid->size.y, slack, &runs->first[1], &runs->last[1], &clippedY) &
-                        run_extent(z, grid->size.z, slack, &runs->first[2], &runs->last[2], &clippedZ);
+    const int8 inside = run_extent(x, grid->size.x, slack, &runs->first[0], &runs->last[0]) &
+                        run_extent(y, grid->size.y, slack, &runs->first[1], &runs->last[1]) &
+                        run_extent(z, grid->size.z, slack, &runs->first[2], &runs->last[2]);
 
     const real8 ox = LANES_REAL(runs->first[0]), oy = LANES_REAL(runs->first[1]), oz = LANES_REAL(runs->first[2]);
 #pragma unroll
@@ -136,7 +133,7 @@ INLINE void run_setup(bool thin, const vitrail_GridDesc* grid, global const floa
     const real8 ux = x[1] - x[0], uy = y[1] - y[0], uz = z[1] - z[0], vx = x[2] - x[0], vy = y[2] - y[0], vz = z[2] - z[0];
     const real8 nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
     const int8 flat = LANES_TRUE(nx == LANES_OF(0)) & LANES_TRUE(ny == LANES_OF(0)) & LANES_TRUE(nz == LANES_OF(0));
-    const int8 found = (inside & (RUN_INSIDE | (flat & RUN_DEGENERATE) | ((clippedX | clippedY) & RUN_CLIPPED))) | (~inside & RUN_OUTSIDE);
+    const int8 found = (inside & (RUN_INSIDE | (flat & RUN_DEGENERATE))) | (~inside & RUN_OUTSIDE);
     runs->state = live & ((good & found) | (~good & RUN_SKIPPED));
     const real8 inverse = fabs(nz) > LANES_OF(REAL_PARALLEL) * (fabs(nx) + fabs(ny)) ? LANES_OF(-1) / nz : LANES_OF(0);
     runs->planeX = nx * inverse;
@@ -165,6 +162,12 @@ INLINE void run_between(const Bounds* bounds, int lane, real8 v, real8* low, rea
                      fma(LANES_OF(lanes_at(&bounds->lowSlope[1], lane)), v, LANES_OF(lanes_at(&bounds->low[1], lane))));
     *high = lanes_min(fma(LANES_OF(lanes_at(&bounds->highSlope[0], lane)), v, LANES_OF(lanes_at(&bounds->high[0], lane))),
                       fma(LANES_OF(lanes_at(&bounds->highSlope[1], lane)), v, LANES_OF(lanes_at(&bounds->high[1], lane))));
+}
+
+// Those of eight triangles, each at its own place.
+INLINE void run_between_lanes(const Bounds* bounds, real8 v, real8* low, real8* high) {
+    *low = lanes_max(fma(bounds->lowSlope[0], v, bounds->low[0]), fma(bounds->lowSlope[1], v, bounds->low[1]));
+    *high = lanes_min(fma(bounds->highSlope[0], v, bounds->high[0]), fma(bounds->highSlope[1], v, bounds->high[1]));
 }
 
 // The runs there: first and end, within [least, most].

@@ -28,6 +28,13 @@ INLINE int8 lanes_ceil_int(real8 a) {
     return i - LANES_TRUE(LANES_REAL(i) < a);
 }
 
+// The least of eight; any() and all() of PoCL 3.1 go lane by lane.
+INLINE int lanes_int_least(int8 a) {
+    const int4 four = min(a.lo, a.hi);
+    const int2 two = min(four.lo, four.hi);
+    return min(two.x, two.y);
+}
+
 // Lane `lane` of a vector in private memory.
 INLINE real lanes_at(const real8* v, int lane) { return ((const real*)v)[lane]; }
 INLINE int lanes_int_at(const int8* v, int lane) { return ((const int*)v)[lane]; }

@@ -112,8 +112,8 @@ void expectSingleBound(const Mesh& mesh, const Grid& grid, const std::string& na
     EXPECT_LE(farthest, 4 * std::sqrt(reach * 0x1p-23)) << name << " on " << grid.text() << ": " << diff.text();
 }
 
-// Fei, Wang & Chen 2012, section 6: what lies in one cell is one bit (one column is one run of bits), what straddles is tested; nothing is
-// missing. Triangles smaller than a cell, within one and over a face, an edge and a corner of it.
+// Fei, Wang & Chen 2012, section 6: what lies in one cell is one bit (one column is one run of bits), what straddles is tested;
+// nothing is missing. Triangles smaller than a cell, within one and over a face, an edge and a corner of it.
 TEST(Conservative, ExactOnStraddlers) {
     const Uint3 size(24, 24, 70);
     const Grid grid = Grid::box(Float3(0), 1.0f, size);
@@ -129,6 +129,32 @@ TEST(Conservative, ExactOnStraddlers) {
             test::addTriangle(mesh, a, b, c);
         }
         expectTruth(mesh, grid, "triangles over " + std::to_string(across) + " faces");
+    }
+}
+
+// Triangles of at most four columns by four go side by side, larger ones alone, and what they set is queued: boxes of 1 to 6
+// cells along each axis, mixed, low corners at every slice of a word and every column of a tile, corners of the box inside its
+// cells and on their faces.
+TEST(Conservative, IsTheTruthSideBySideAndAlone) {
+    const Uint3 size(40, 40, 128);
+    const Grid grid = Grid::box(Float3(0), 1.0f, size);
+    for (const bool onFaces : {false, true}) {
+        test::Random random(onFaces ? 5 : 6);
+        Mesh mesh;
+        for (int t = 0; t < 6000; ++t) {
+            Float3 low, extent;
+            for (unsigned axis = 0; axis < 3; ++axis) {
+                extent[axis] = std::floor(random.in(1, t % 3 == 0 ? 7.0f : 4.0f)) - (onFaces ? 0.0f : random.in(0, 0.9f));
+                low[axis] = std::floor(random.in(-1, float(size[axis]) - 2)) + (onFaces ? 0.0f : random.in(0, 0.05f));
+            }
+            const auto inBox = [&] {
+                return low +
+                       extent * (onFaces ? glm::floor(random.point(Float3(0), Float3(2))) : random.point(Float3(0), Float3(1)));
+            };
+            const Float3 a = inBox(), b = inBox(), c = inBox();
+            test::addTriangle(mesh, a, b, c);
+        }
+        expectTruth(mesh, grid, onFaces ? "on faces" : "inside");
     }
 }
 
