@@ -3,6 +3,8 @@
 //   facet/<cells>/<method>         a sphere of 50 cells of ever finer facets, by the length of their edges: missingThin
 //   isolated/<cells>/<method>      triangles that stand alone, by the length of their edges: lost, those without a voxel
 //   offset/<sixteenths>/<method>   a torus moved by parts of a cell: changed, the share of its voxels that others take the place of
+//   turn/<frame>/<method>          that torus turned by half a degree a frame: changed since the frame before
+//   twist/<frame>/<method>         that torus twisted, by 0.02 more a frame: the same
 // <method> is a name of methods.h[,option=value], or the truth. Times are kernelMs.
 #include <benchmark/benchmark.h>
 #include <vitrail/metrics/voxels.h>
@@ -12,6 +14,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <span>
 
@@ -173,6 +176,28 @@ void addOffset(Queue& queue, const Contender& one, bool truth) {
         })->Iterations(1);
 }
 
+/// A torus of 50 cells in 64^3, turned or twisted about its middle.
+Mesh moving(bool twist, int frame) {
+    Mesh mesh = makeShape("torus", {});
+    const Bounds bounds = mesh.bounds();
+    const Float3 middle = (bounds.low + bounds.high) * 0.5f;
+    const float scale = 50 / (bounds.high.x - bounds.low.x);
+    for (Float3& p : mesh.positions) {
+        const Float3 q = turned(turned((p - middle) * scale, 33, 1, 2), 21, 0, 1);
+        p = Float3(32.1f, 31.8f, 32.3f) + turned(q, twist ? 0.02 * 57.29577951308232 * frame * double(q.y) / 25 : 0.5 * frame, 0, 2);
+    }
+    return mesh;
+}
+
+void addMoving(const std::string& name, bool twist, const std::function<VoxelBits(const Mesh&, const Grid&)>& voxels) {
+    for (int frame = 1; frame <= 12; ++frame)
+        addBenchmark((twist ? "twist/" : "turn/") + std::to_string(frame) + "/" + name, [=](benchmark::State& state) {
+            const Grid grid = Grid::box(Float3(0), 1, Uint3(64));
+            for (auto _ : state) state.SetIterationTime(1e-6);
+            state.counters["changed"] = changedShare(voxels(moving(twist, frame - 1), grid), voxels(moving(twist, frame), grid));
+        })->Iterations(1);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -185,5 +210,15 @@ int main(int argc, char** argv) {
         }
         addIsolated(queue, {"conservative", Conservative{}});
         addOffset(queue, {"truth", Thin{}}, true);
+        for (const Contender& one : {Contender{"conservative", Conservative{}}, Contender{"points", Points{}}, Contender{"solid", Solid{}}})
+            addOffset(queue, one, false);
+        for (const bool twist : {false, true}) {
+            const auto add = [&](const Contender& one) {
+                addMoving(one.name, twist, [&queue, method = one.method](const Mesh& mesh, const Grid& grid) { return voxelize(queue, mesh, grid, method).host(); });
+            };
+            for (const Contender& one : contenders()) add(one);
+            for (const Contender& one : {Contender{"conservative", Conservative{}}, Contender{"points", Points{}}, Contender{"solid", Solid{}}}) add(one);
+            addMoving("truth", twist, [](const Mesh& mesh, const Grid& grid) { return reference::thin(mesh, grid).certain; });
+        }
     });
 }

@@ -114,7 +114,7 @@ int runVoxelize(const Options& options) {
     if (!output.empty()) {
         bar.show("writing " + options.output, -1);
         if (channels != Channel::none) files = saveChannels(output, voxels, zUp);
-        saveVoxels(output, voxels.host(), {.zUp = zUp});
+        saveVoxels(output, voxels, {.zUp = zUp});
         files.insert(files.begin(), options.output);
     }
     bar.clear();

@@ -388,5 +388,17 @@ void saveVoxels(const std::filesystem::path& file, const VoxelBits& voxels, cons
     }
 }
 
+void saveVoxels(const std::filesystem::path& file, const Voxels& voxels, const SaveOptions& options) {
+#ifdef VITRAIL_HAS_VDB
+    if (io_detail::lowerEnding(file) == ".vdb" && voxels.bricks()) {
+        saveVdbCells(file, voxels.grid(), [&](const std::function<void(Uint3)>& mark) {
+            voxels.forEach([&](Uint3 cell, std::uint64_t) { mark(cell); });
+        }, options);
+        return;
+    }
+#endif
+    saveVoxels(file, voxels.host(), options);
+}
+
 }  // namespace v0
 }  // namespace vitrail

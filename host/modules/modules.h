@@ -17,7 +17,9 @@ struct ImagesModule {
 struct VdbModule {
     const char* version;
     decltype(&saveVdb) save;
+    decltype(&saveVdbCells) saveCells;
     decltype(&loadVdb) load;
+    decltype(&loadVdbCells) loadCells;
 };
 
 }  // namespace vitrail::io_detail

@@ -73,7 +73,15 @@ void saveVdb(const std::filesystem::path& file, const VoxelBits& voxels, const S
     vdb().save(file, voxels, options);
 }
 
+void saveVdbCells(const std::filesystem::path& file, const Grid& grid, const VisitCells& visit, const SaveOptions& options) {
+    vdb().saveCells(file, grid, visit, options);
+}
+
 VoxelBits loadVdb(const std::filesystem::path& file, const Grid& grid) { return vdb().load(file, grid); }
+
+void loadVdbCells(const std::filesystem::path& file, const Grid& grid, const std::function<void(Uint3, Uint3)>& visit) {
+    vdb().loadCells(file, grid, visit);
+}
 
 }  // namespace v0
 #endif

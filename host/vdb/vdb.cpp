@@ -56,7 +56,9 @@ bool visitActiveOfAnyType(const openvdb::GridBase& base, F&& f) {
            visitActive<Vec3SGrid>(base, f) || visitActive<Vec3DGrid>(base, f) || visitActive<Vec3IGrid>(base, f);
 }
 
-VoxelBits place(const openvdb::GridBase& from, const std::filesystem::path& file, const Grid& grid) {
+using VisitBox = std::function<void(Uint3, Uint3)>;
+
+void place(const openvdb::GridBase& from, const std::filesystem::path& file, const Grid& grid, const VisitBox& visit) {
     const openvdb::math::Transform& transform = from.transform();
     if (!transform.isLinear())
         fail("its first grid has no linear transform", file, "a grid of cubic voxels", ErrorCode::badInput);
@@ -88,7 +90,6 @@ VoxelBits place(const openvdb::GridBase& from, const std::filesystem::path& file
     const std::int64_t shift[3] = {static_cast<std::int64_t>(std::floor(base.x + 1e-4)),
                                    static_cast<std::int64_t>(std::floor(base.y + 1e-4)),
                                    static_cast<std::int64_t>(std::floor(base.z + 1e-4))};
-    VoxelBits voxels(grid);
     const Uint3 size = grid.size();
     const auto mark = [&](const openvdb::CoordBBox& box) {
         std::int64_t low[3], high[3];
@@ -100,25 +101,28 @@ VoxelBits place(const openvdb::GridBase& from, const std::filesystem::path& file
                      ErrorCode::badInput);
             }
         }
-        for (std::int64_t z = low[2]; z <= high[2]; ++z) {
-            for (std::int64_t y = low[1]; y <= high[1]; ++y) {
-                for (std::int64_t x = low[0]; x <= high[0]; ++x) {
-                    voxels.set(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(z));
-                }
-            }
-        }
+        visit(Uint3(low[0], low[1], low[2]), Uint3(high[0], high[1], high[2]));
     };
     if (!visitActiveOfAnyType(from, mark)) {
         fail("its first grid holds " + from.valueType(), file, "a grid of bool, numbers or vectors", ErrorCode::unsupported);
     }
-    return voxels;
 }
 
 }  // namespace
 
 void saveVdb(const std::filesystem::path& file, const VoxelBits& voxels, const SaveOptions& options) {
-    expectBox(voxels.grid, file);
-    const Uint3 size = voxels.grid.size();
+    saveVdbCells(file, voxels.grid, [&](const std::function<void(Uint3)>& mark) {
+        const Uint3 size = voxels.grid.size();
+        for (std::uint32_t y = 0; y < size.y; ++y)
+            for (std::uint32_t x = 0; x < size.x; ++x)
+                for (std::uint32_t z = 0; z < size.z; ++z)
+                    if (voxels.at(x, y, z)) mark({x, y, z});
+    }, options);
+}
+
+void saveVdbCells(const std::filesystem::path& file, const Grid& grid, const VisitCells& visit, const SaveOptions& options) {
+    expectBox(grid, file);
+    const Uint3 size = grid.size();
     // The part `io`, which has a helper for this, stands above this one.
     std::filesystem::path temporary = file;
     static std::atomic<unsigned> count{0};
@@ -128,16 +132,10 @@ void saveVdb(const std::filesystem::path& file, const VoxelBits& voxels, const S
         openvdb::BoolGrid::Ptr out = openvdb::BoolGrid::create(false);
         out->setName("occupancy");
         auto accessor = out->getAccessor();
-        for (std::uint32_t y = 0; y < size.y; ++y) {
-            for (std::uint32_t x = 0; x < size.x; ++x) {
-                for (std::uint32_t z = 0; z < size.z; ++z) {
-                    if (voxels.at(x, y, z)) accessor.setValueOn(turned(x, y, z, size, options.zUp), true);
-                }
-            }
-        }
+        visit([&](Uint3 c) { accessor.setValueOn(turned(c.x, c.y, c.z, size, options.zUp), true); });
         out->pruneGrid();
-        const double edge = voxels.grid.edge();
-        const Float3 o = voxels.grid.origin();
+        const double edge = grid.edge();
+        const Float3 o = grid.origin();
         const Double3 origin = options.zUp ? Double3(o.x, -(double(o.z) + edge * size.z), o.y) : Double3(o);
         const openvdb::Vec3d centre(origin.x + edge / 2, origin.y + edge / 2, origin.z + edge / 2);
         openvdb::math::Mat4d matrix = openvdb::math::Mat4d::identity();
@@ -155,6 +153,16 @@ void saveVdb(const std::filesystem::path& file, const VoxelBits& voxels, const S
 }
 
 VoxelBits loadVdb(const std::filesystem::path& file, const Grid& grid) {
+    VoxelBits voxels(grid);
+    loadVdbCells(file, grid, [&](Uint3 least, Uint3 most) {
+        for (std::uint32_t z = least.z; z <= most.z; ++z)
+            for (std::uint32_t y = least.y; y <= most.y; ++y)
+                for (std::uint32_t x = least.x; x <= most.x; ++x) voxels.set(x, y, z);
+    });
+    return voxels;
+}
+
+void loadVdbCells(const std::filesystem::path& file, const Grid& grid, const VisitBox& visit) {
     expectBox(grid, file);
     try {
         openvdb::initialize();
@@ -165,7 +173,7 @@ VoxelBits loadVdb(const std::filesystem::path& file, const Grid& grid) {
         openvdb::io::Stream in(bytes, false);
         const openvdb::GridPtrVecPtr grids = in.getGrids();
         if (!grids || grids->empty() || !grids->front()) fail("it holds no grid", file, "a file with one");
-        return place(*grids->front(), file, grid);
+        place(*grids->front(), file, grid, visit);
     } catch (const std::ios_base::failure&) {
         fail("the file ends too early", file, "the whole file");
     } catch (const openvdb::Exception& error) {

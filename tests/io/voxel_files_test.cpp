@@ -1,5 +1,7 @@
 // Voxel files: what is written comes back bit for bit, the bytes are those that other tools expect, and what other tools write is
 // read; broken files are errors.
+#include <algorithm>
+#include <array>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -14,6 +16,13 @@
 #include <vitrail/core/error.h>
 #include <vitrail/io/load.h>
 #include <vitrail/io/save.h>
+#ifdef VITRAIL_HAS_VDB
+#include <vitrail/io/vdb.h>
+#endif
+#include <vitrail/voxelize/thin.h>
+
+#include "tests/support/closed.h"
+#include "tests/support/device.h"
 
 namespace vitrail {
 namespace {
@@ -472,6 +481,38 @@ TEST_F(VoxelFiles, VdbTiles) {
     saveVoxels(folder_ / "a.vdb", voxels);
     EXPECT_EQ(loadVoxels(folder_ / "a.vdb", voxels.grid).words, voxels.words);
     EXPECT_LT(std::filesystem::file_size(folder_ / "a.vdb"), 100000u);
+}
+
+// 8 GiB as dense bits, which would pass any limit here. Each cell once, and all of them.
+TEST_F(VoxelFiles, VdbOfBricksTakesTheMemoryOfItsVoxels) {
+    const Mesh torus = test::closedTorus(Float3(0), 5, 0.002f, Float3(0.3f, 1.1f, 2), 40, 5);
+    const Grid grid = Grid::fit(torus.bounds(), 4096);
+    Queue own(test::device());
+    own.setMemoryLimit(1ull << 30);
+    const Voxels voxels = voxelize(own, torus, grid, Thin{});
+    ASSERT_GT(voxels.report().bricks, 0u);
+    EXPECT_THROW((void)voxels.host(), Error);
+    std::vector<std::array<unsigned, 3>> wanted, found;
+    const unsigned last = grid.size().z - 1;
+    for (const bool zUp : {false, true}) {
+        saveVoxels(folder_ / "a.vdb", voxels, {.zUp = zUp});
+        wanted.clear();
+        found.clear();
+        voxels.forEach([&](Uint3 c, std::uint64_t) { zUp ? wanted.push_back({c.x, last - c.z, c.y}) : wanted.push_back({c.x, c.y, c.z}); });
+        const Uint3 size = grid.size();
+        const Float3 o = grid.origin();
+        const Grid there = zUp ? Grid::box(Float3(o.x, float(-(double(o.z) + double(grid.edge()) * size.z)), o.y), grid.edge(), {size.x, size.z, size.y}) : grid;
+        loadVdbCells(folder_ / "a.vdb", there, [&](Uint3 least, Uint3 most) {
+            for (unsigned z = least.z; z <= most.z; ++z)
+                for (unsigned y = least.y; y <= most.y; ++y)
+                    for (unsigned x = least.x; x <= most.x; ++x) found.push_back({x, y, z});
+        });
+        std::sort(wanted.begin(), wanted.end());
+        std::sort(found.begin(), found.end());
+        EXPECT_GT(wanted.size(), 10000u);
+        EXPECT_TRUE(found == wanted) << found.size() << " of " << wanted.size();
+    }
+    EXPECT_THROW(saveVoxels(folder_ / "a.npy", voxels), Error);
 }
 #else
 TEST_F(VoxelFiles, VdbWithoutItsComponent) {

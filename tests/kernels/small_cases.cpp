@@ -36,6 +36,12 @@ int main() {
                 std::printf("local slices: %llu voxels\n",
                             static_cast<unsigned long long>(voxelize(queue, mesh, grid, Sampled{.span = true, .range = &range}).occupied()));
             }
+            for (const Storage storage : {Storage::dense, Storage::bricks}) {
+                queue.setStorage(storage);
+                std::printf("per_slice, inside: %llu voxels\n", static_cast<unsigned long long>(voxelize(queue, mesh, Grid::box(Float3(0), 1.0f, size),
+                                                                                                         PerSlice{.interior = true}).occupied()));
+            }
+            queue.setStorage(Storage::automatic);
             for (const Method& row : methods()) {
                 if (!isVoxelizer(row)) continue;
                 const Voxelizer method = voxelizerByName(

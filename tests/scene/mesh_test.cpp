@@ -50,7 +50,8 @@ TEST(MeshView, ReadsStridedArraysOfTheCaller) {
                         .indices = {},
                         .materials = {},
                         .normals = {vertices[0].normal, 3, sizeof(Vertex)},
-                        .texcoords = {}};
+                        .texcoords = {},
+                        .colours = {}};
     EXPECT_EQ(view.triangleCount(), 1u);
     EXPECT_EQ(view.index(2), 2u);
     EXPECT_EQ(view.bounds().high, Float3(1, 1, 0));

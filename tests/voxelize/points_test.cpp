@@ -192,20 +192,43 @@ TEST(Points, MissLittleOfScans) {
     }
 }
 
-// The share that is asked for is kept, and not by much.
+// The share that is asked for is kept; on compact bodies (0.14 to 0.21 over the factor, of 0.33) more than two fifths of it is missing.
 TEST(Points, MissTheShareThatTheirSafetyFactorIsFor) {
     const Mesh sphere = test::closedSphere(Float3(0), 5, Float3(0.4f, 1, 2), 32, 16),
                torus = test::closedTorus(Float3(0), 5, 2, Float3(0.3f, 1.1f, 2), 40, 20);
     for (const Mesh* mesh : {&sphere, &torus})
         for (const unsigned longest : {48u, 96u})
-            for (const double missing : {0.18, 0.1, 0.05, 0.03}) {
+            for (const double missing : {0.25, 0.15, 0.08, 0.05}) {
                 const Grid grid = Grid::fit(mesh->bounds(), longest);
                 const Points method{.safetyFactor = safetyFactorFor(missing, *mesh, grid)};
                 const reference::Truth truth = reference::conservative(*mesh, grid);
                 const double share = compareVoxels(voxelize(queue(), *mesh, grid, method).host(), truth.certain, truth.possible).missingShare();
                 EXPECT_LE(share, missing) << longest;
-                EXPECT_GE(share, missing / 1.5) << longest;
+                EXPECT_GE(share, missing / 2.5) << longest;
             }
+}
+
+// On every generated shape, parts thinner than a cell among them, which come nearest.
+TEST(Points, MissNoMoreThanTheShareThatTheirSafetyFactorIsForOnAnyShape) {
+    double worst = 0;
+    for (const test::Case& one : test::smallShapes())
+        for (const unsigned longest : {32u, 64u, 128u}) {
+            const Grid grid = Grid::fit(one.mesh.bounds(), longest);
+            const reference::Truth truth = reference::conservative(one.mesh, grid);
+            for (const double missing : {0.28, 0.12, 0.05}) {
+                Points method;
+                try {
+                    method.safetyFactor = safetyFactorFor(missing, one.mesh, grid);
+                } catch (const Error& error) {
+                    EXPECT_EQ(error.code(), ErrorCode::unsupported);
+                    continue;  // edges below a cell
+                }
+                const double share = compareVoxels(voxelize(queue(), one.mesh, grid, method).host(), truth.certain, truth.possible).missingShare();
+                EXPECT_LE(share, missing) << one.name << " " << longest;
+                worst = std::max(worst, share / missing);
+            }
+        }
+    EXPECT_GT(worst, 0.67);  // else the law asks for more points than it has to
 }
 
 TEST(Points, NoSafetyFactorIsGivenWhereTheLawIsNotKnownToHold) {
@@ -219,7 +242,7 @@ TEST(Points, NoSafetyFactorIsGivenWhereTheLawIsNotKnownToHold) {
         }
         return false;
     };
-    EXPECT_TRUE(refused(0.3, fine));
+    EXPECT_TRUE(refused(0.34, fine));
     EXPECT_TRUE(refused(0.01, fine));
     EXPECT_TRUE(refused(0, fine));
     EXPECT_TRUE(refused(std::nan(""), fine));

@@ -18,6 +18,10 @@ struct SaveOptions {
 /// the voxels' outer faces only), .vdb (OpenVDB, needs the component vdb). Throws Error (badFile, unsupported).
 void saveVoxels(const std::filesystem::path& file, const VoxelBits& voxels, const SaveOptions& options = {});
 
+/// The same of voxels on the device. A .vdb is written from their bricks, without the dense grid: a thin scene at 4096^3 takes the memory of
+/// its voxels (vdb.h). The others go through Voxels::host() and have its limit.
+void saveVoxels(const std::filesystem::path& file, const Voxels& voxels, const SaveOptions& options = {});
+
 /// Occupancy from .npy, .raw, .vox or .vdb, as another tool may have written it, on the grid given (which it must fit in size; a .vdb
 /// by its transform). Throws Error (badFile, badInput).
 VoxelBits loadVoxels(const std::filesystem::path& file, const Grid& grid);

@@ -13,13 +13,17 @@ inline namespace v0 {
 struct PerSlice {
     static constexpr std::string_view name = "per_slice";
     Channel channels = Channel::none;  ///< attributes wanted beside occupancy
+    bool interior = false;             ///< the cells inside by parity, as a stencil buffer counts it for each slice, instead of the surface
 
     template <class Self, class Visit>
-    static void visitOptions(Self&, Visit&&) {}
+    static void visitOptions(Self& self, Visit&& visit) {
+        visit("interior", self.interior);
+    }
 };
 
 /// Voxels and channels of Sampled, bit for bit, with as many launches as the grid has slices (twice as many with channels), which can be
-/// interrupted between them. Waits, memory and errors as voxelize(..., Conservative).
+/// interrupted between them. With the interior: voxels and report().openColumns of Solid, bit for bit, without channels (Error, unsupported);
+/// all triangles before a slice are drawn for it, one launch more counts open columns, and bricks are taken behind bodies too. Waits, memory and errors as voxelize(..., Conservative).
 Voxels voxelize(Queue& queue, const MeshInput& mesh, const Grid& grid, const PerSlice& method);
 std::uint64_t estimate(const MeshInput& mesh, const Grid& grid, const PerSlice& method);
 

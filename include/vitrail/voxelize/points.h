@@ -44,13 +44,13 @@ struct Points {
 Voxels voxelize(Queue& queue, const MeshInput& mesh, const Grid& grid, const Points& method);
 std::uint64_t estimate(const MeshInput& mesh, const Grid& grid, const Points& method);
 
-/// The safety factor at which at most the share `missing` of Conservative's voxels is missing: 0.21 / missing. What is missed are cells of
+/// The safety factor at which at most the share `missing` of Conservative's voxels is missing: 0.33 / missing. What is missed are cells of
 /// which a triangle cuts off a corner, as deep as points are apart; so it falls as 1 / safetyFactor (Fei's eq. 3, a logarithm, contradicts
-/// itself at 1). Missing times safetyFactor was 0.130 to 0.188 on fifteen meshes with mean edges of 1.1 to 10 cells and factors from 1.5
-/// to 8, to 0.21 on generated ones, to 0.23 where sheets lie a few cells apart and to 0.32 where parts are thinner than a cell. So what is
-/// measured is at most `missing`, and for most meshes at least two thirds of it. `mesh` and `grid` share one space. Throws Error
-/// (unsupported) where that was not seen to
-/// hold: a factor outside (1, 8], or edges that on the mean are shorter than a cell.
+/// itself at 1). 0.33 lies above missing times safetyFactor of all that was measured (`bench_points factors`, safety factors 1.25 to 8): 0.14 to
+/// 0.22 where bodies are thicker than a cell, 0.25 to 0.32 on a tree whose twigs are not. So what is measured is at most `missing`, and on compact
+/// bodies as little as two fifths of it; surfaces along the grid's axes miss next to nothing at any factor. An upper bound of what was
+/// measured, no proof. `mesh` and `grid` share one space. Throws Error (unsupported) where that was not seen to hold: a factor outside (1, 8],
+/// or edges that on the mean are shorter than a cell.
 float safetyFactorFor(double missing, const MeshView& mesh, const Grid& grid);
 
 }  // namespace v0
