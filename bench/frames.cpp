@@ -197,9 +197,9 @@ int main(int argc, char** argv) {
                              const auto truth = [&input]() -> const Truth& { return truths.try_emplace(input.name, input.scene).first->second; };
                              for (const std::uint32_t resolution : {64u, 128u, 256u, 512u})
                                  for (const Method& row : methods()) {
-                                     if (row.family != Family::glass) continue;
                                      const std::string size = std::to_string(resolution);
-                                     const std::vector<std::string> options{"resolution=" + size};
+                                     const std::vector<std::string> options = atResolution(row, size);
+                                     if (row.family != Family::glass || row.role != Role::product || options.empty()) continue;
                                      addBenchmark(input.name + "/" + size + "/" + std::string(row.name),
                                                   [&queue, &input, truth, resolution, method = glassByName(row.name, options)](benchmark::State& state) {
                                                       benchVoxels(state, queue, input, truth(), method, resolution);

@@ -38,7 +38,7 @@ struct Contender {
 std::vector<Contender> contenders(Queue& queue) {
     std::vector<Contender> all;
     for (const Method& row : methods())
-        if (row.family == Family::glass)
+        if (row.family == Family::glass && row.role == Role::product)
             all.push_back({std::string(row.name), [&queue, &row](benchmark::State& state, const Scene& scene, const Camera& camera, float resolution) {
                                const std::vector<std::string> options = atResolution(row, std::to_string(static_cast<int>(resolution)));
                                GlassRays rays = glassRays(queue, scene, camera, glassByName(row.name, options));

@@ -487,8 +487,9 @@ TEST_F(VoxelFiles, VdbTiles) {
 TEST_F(VoxelFiles, VdbOfBricksTakesTheMemoryOfItsVoxels) {
     const Mesh torus = test::closedTorus(Float3(0), 5, 0.002f, Float3(0.3f, 1.1f, 2), 40, 5);
     const Grid grid = Grid::fit(torus.bounds(), 4096);
-    Queue own(test::device());
-    own.setMemoryLimit(1ull << 30);
+    Device device = Device::select();
+    device.setMemoryLimit(1ull << 30);
+    Queue own(device);
     const Voxels voxels = voxelize(own, torus, grid, Thin{});
     ASSERT_GT(voxels.report().bricks, 0u);
     EXPECT_THROW((void)voxels.host(), Error);
