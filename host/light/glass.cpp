@@ -29,6 +29,9 @@ GlassMethod glassByName(std::string_view name, std::span<const std::string> opti
 }
 
 Image shade(Queue& queue, const Scene& scene, const Camera& camera, const Glass& effect) {
+    if (effect.reflections > 8)
+        throw Error(ErrorCode::badOption,
+                    {"glass: reflections=" + std::to_string(effect.reflections) + " is out of range", "", "", "reflections from 0 to 8"});
     return detail::marchPicture(
         queue, scene, camera, effect.method, effect.samples, "glass",
         [&](detail::Call& call, const detail::MarchVolume& volume, std::uint64_t samples, const Buffer<float>& seen, const Buffer<std::uint32_t>& status) {
@@ -39,7 +42,8 @@ Image shade(Queue& queue, const Scene& scene, const Camera& camera, const Glass&
                 map = queue.workspace().take<float>(4 * texels.size(), "environment map");
                 call.upload(map, &texels[0].x, 4 * texels.size());
             }
-            detail::launchMarch(call, "glass", "glass_shade", volume, samples, light, map, status, seen);
+            detail::launchMarch(call, "glass", "glass_shade", volume, samples, light, map, static_cast<std::int32_t>(effect.reflections), status,
+                                seen);
         });
 }
 

@@ -1,7 +1,11 @@
 #include "light/march.h"
 
+#include <algorithm>
+#include <functional>
+
 #include <vitrail/voxelize/lists.h>
 #include <vitrail/voxelize/solid.h>
+#include <vitrail/voxelize/solid_winding.h>
 #include <vitrail/voxelize/surface.h>
 
 #include "light/image_state.h"
@@ -16,6 +20,11 @@ namespace {
 
 float resolutionOf(const GlassMethod& method) {
     return std::visit([](const auto& one) { return one.resolution; }, method);
+}
+
+/// Whether triangles name more than one material.
+bool several(const Mesh& mesh) {
+    return std::adjacent_find(mesh.materials.begin(), mesh.materials.end(), std::not_equal_to<>()) != mesh.materials.end();
 }
 
 }  // namespace
@@ -33,6 +42,43 @@ void checkGlass(const Scene& scene, const GlassMethod& method) {
                                               "materials that index the scene's list"});
 }
 
+vitrail_Media mediaAt(const Scene& scene, const Float3& eye) {
+    vitrail_Media media{};
+    const Bounds bounds = scene.mesh.bounds();
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(eye[axis] >= bounds.low[axis] && eye[axis] <= bounds.high[axis])) return media;
+    struct Met {
+        double t;
+        std::uint32_t triangle, material;
+        bool inside;
+    };
+    std::vector<Met> met;
+    const Double3 o(eye), d = glm::normalize(Double3(0.3571, 0.5113, 0.7813));  // along nothing that models have
+    const MeshView mesh = scene.mesh.view();
+    for (std::uint32_t i = 0; i < mesh.triangleCount(); ++i) {
+        const std::uint32_t material = mesh.materials.empty() ? 0 : mesh.materials[i];
+        if (scene.materials[material].transmission <= 0.5f) continue;
+        const Double3 a(mesh.positions[mesh.index(3 * i)]), u = Double3(mesh.positions[mesh.index(3 * i + 1)]) - a,
+                      w = Double3(mesh.positions[mesh.index(3 * i + 2)]) - a, p = glm::cross(d, w), r = o - a, q = glm::cross(r, u);
+        const double across = glm::dot(u, p), b = glm::dot(r, p) / across, c = glm::dot(d, q) / across, t = glm::dot(w, q) / across;
+        if (across != 0 && b >= 0 && c >= 0 && b + c <= 1 && t > 0) met.push_back({t, i, material, across < 0});
+    }
+    std::sort(met.begin(), met.end(), [](const Met& a, const Met& b) { return a.t != b.t ? a.t < b.t : a.triangle < b.triangle; });
+    // What is left without having been entered holds the eye, the innermost first.
+    std::vector<std::uint32_t> open, around;
+    for (const Met& one : met) {
+        if (!one.inside) {
+            open.push_back(one.material);
+        } else if (const auto last = std::find(open.rbegin(), open.rend(), one.material); last != open.rend()) {
+            open.erase(std::next(last).base());
+        } else {
+            around.push_back(one.material);
+        }
+    }
+    for (auto one = around.rbegin(); one != around.rend(); ++one) vitrail_pass(&media, *one, 0);
+    return media;
+}
+
 MarchVolume marchVolume(Call& call, const Scene& scene, const Camera& camera, const GlassMethod& method) {
     Queue& queue = call.queue();
     const Grid grid = Grid::fit(scene.mesh.bounds(), static_cast<std::uint32_t>(resolutionOf(method)));
@@ -47,12 +93,13 @@ MarchVolume marchVolume(Call& call, const Scene& scene, const Camera& camera, co
     if (std::holds_alternative<Exact>(method)) {
         VoxelLists lists = voxelizeLists(queue, mesh, grid);
         return {grid, std::move(mesh), std::move(lists.voxels), {}, {}, {}, std::move(lists.triangles), std::move(lists.ends), std::move(gbuffer),
-                std::move(materials), bound};
+                std::move(materials), bound, mediaAt(scene, camera.eye)};
     }
     SurfaceVoxels surface = voxelizeSurface(queue, mesh, grid);
-    Voxels solid = voxelize(queue, mesh, grid, Solid{});
+    // Bodies in one another are inside where even-odd has them outside.
+    Voxels solid = several(scene.mesh) ? voxelize(queue, mesh, grid, SolidWinding{}) : voxelize(queue, mesh, grid, Solid{});
     return {grid, std::move(mesh), std::move(surface.voxels), std::move(surface.surface), std::move(surface.planes), std::move(solid), {}, {},
-            std::move(gbuffer), std::move(materials), bound};
+            std::move(gbuffer), std::move(materials), bound, mediaAt(scene, camera.eye)};
 }
 
 Image marchPicture(Queue& queue, const Scene& scene, const Camera& camera, const GlassMethod& method, std::uint32_t perSide, const char* name,

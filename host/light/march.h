@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 
+#include <vitrail/layout/ray_end.h>
 #include <vitrail/layout/shading.h>
 #include <vitrail/layout/surface_voxel.h>
 #include <vitrail/light/glass.h>
@@ -26,12 +27,16 @@ struct MarchVolume {
     GBuffer gbuffer;
     Buffer<vitrail_MaterialDesc> materials;
     std::int32_t bound;  ///< a walk crosses at most this many cells on four straight ways through the grid; a march past it is ended and counted
+    vitrail_Media around;  ///< the camera
 };
 
 std::string_view nameOf(const GlassMethod& method);
 
 /// Throws Error (badOption, badInput) before anything is made.
 void checkGlass(const Scene& scene, const GlassMethod& method);
+
+/// What `eye` is inside of, by the surfaces along a line from it.
+vitrail_Media mediaAt(const Scene& scene, const Float3& eye);
 
 MarchVolume marchVolume(Call& call, const Scene& scene, const Camera& camera, const GlassMethod& method);
 
@@ -50,7 +55,7 @@ void launchMarch(Call& call, const char* file, const char* kernel, const MarchVo
         call.launchRange(program, kernel, count, volume.grid.desc(), volume.gbuffer.camera, volume.mesh.positions(), volume.mesh.indices(),
                          volume.mesh.normals(), volume.mesh.materials(), volume.gbuffer.triangle, voxels.bits(), voxels.bricks(), voxels.rank(),
                          voxels.mip(), volume.surface, volume.planes, solidBits, solidBricks, voxels.materialBuffer(), volume.materials,
-                         voxels.countBuffer(), volume.triangles, volume.ends, volume.bound, args..., first);
+                         voxels.countBuffer(), volume.triangles, volume.ends, volume.bound, volume.around, args..., first);
     }
 }
 

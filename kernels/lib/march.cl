@@ -32,6 +32,7 @@ typedef struct {
     global const uint* indices;
     global const float* normals;
     global const uint* triangleMaterial;
+    vitrail_Media around;  // the camera
 } Volume;
 
 #define NO_TRIANGLE 0xffffffffu
@@ -42,15 +43,40 @@ typedef struct {
     float3 position, normal, flat;  // voxel coordinates; unit normals, outward: for shading, and of the plane
     uint material, triangle;
     bool inside;  // whether the ray came from within
+    // A surface of another material in the same place, or VITRAIL_AIR, passed after the first (vitrail_first).
+    uint otherMaterial, otherTriangle;
+    bool otherInside;
 } Crossing;
 
 // A ray on its way from one surface to the next.
 typedef struct {
-    bool inside;    // glass
-    uint triangle;  // that it stands on, or NO_TRIANGLE
-    float least;    // only what lies past this distance counts
-    int steps;      // cells and bricks walked so far
+    vitrail_Media media;  // that it is inside of
+    uint triangle, otherTriangle;  // that it stands on, or NO_TRIANGLE
+    float least;  // only what lies past this distance counts
+    int steps;    // cells and bricks walked so far
 } March;
+
+// A ray at its start; inside of a body of `material` or of nothing.
+static inline March march_begin(bool inside, uint material, float least) {
+    March march;
+    march.media.depth = inside ? 1u : 0u;
+    march.media.material[0] = material;
+    march.triangle = march.otherTriangle = NO_TRIANGLE;
+    march.least = least;
+    march.steps = 0;
+    return march;
+}
+
+// The medium before a crossing; `media` becomes what is behind.
+static inline uint march_pass(const Crossing* hit, vitrail_Media* media) {
+    const uint before = vitrail_pass(media, hit->material, hit->inside);
+    if (hit->otherMaterial != VITRAIL_AIR) vitrail_pass(media, hit->otherMaterial, hit->otherInside);
+    return before;
+}
+
+static inline float march_index(const Volume* volume, uint medium) {
+    return medium == VITRAIL_AIR ? 1.0f : volume->materials[medium].absorption.w;
+}
 
 #define REACH 0.5f  // cells that a march begins before `least`, and past its own by which a plane still counts
 
@@ -64,10 +90,10 @@ static inline float3 to_world(const vitrail_GridDesc* grid, float3 p) { return p
         global const uint2 *bricks, global const uint *rank, global const uchar *mip, global const vitrail_SurfaceVoxel *surface,           \
         global const vitrail_SurfaceVoxel *planes, global const uint *solid, global const uint2 *solidBricks,                               \
         global const uint *voxelMaterial, global const vitrail_MaterialDesc *materials, global const uint *counts, global const uint *list, \
-        global const uint *end, int bound
+        global const uint *end, int bound, const vitrail_Media around
 #define MARCH_VOLUME                                                                                                                         \
     {&grid, words, bricks, rank, mip, surface, planes, solid, solidBricks, voxelMaterial, materials, bound, counts, list, end, positions, indices, \
-     normals, triangleMaterial}
+     normals, triangleMaterial, around}
 
 // The shading normal there, or the flat one.
 static inline float3 march_shading(global const float* normals, const uint index[3], const float share[3], float3 flat) {

@@ -7,19 +7,44 @@
 #define STATUS_LOST 0     // left the grid inside glass
 #define STATUS_BOUNDED 1  // met the bound of events or steps
 
-// Where a path of light ends: at a diffuse point of the scene, or in the surroundings. A sample has at most two (the mirror image on the
-// first surface, and what is seen through it); both are lit in one place, so that the walk to the light is compiled once.
+#define MOST_SPLITS 8  // of a sample's rays, see vitrail/light/glass.h
+#define LEAST_SHARE 0.00390625f  // of a reflection that is worth a ray of its own
+
+// Where a path of light ends: at a diffuse point of the scene, or in the surroundings. A sample has at most one more than it has rays (the
+// mirror image on the first surface); all are lit in one place, so that the walk to the light is compiled once.
 typedef struct {
-    float3 weight;     // of what is found there; zero: no end
-    float3 position;   // voxel coordinates
-    float3 direction;  // of the ray; for a diffuse point its normal
+    float3 weight;        // of what is found there
+    float3 position;      // voxel coordinates
+    float3 direction;     // of the ray; for a diffuse point its normal
+    vitrail_Media media;  // that it lies in
     bool diffuse;
 } End;
 
-static float3 glass_light(const Volume* volume, const vitrail_LightDesc* light, global const float4* map, End end, float width) {
-    float3 seen = (float3)(0.0f), weight = end.weight, position = end.position, normal = end.direction;
-    if (!end.diffuse) {
-        const float3 o = to_world(volume->grid, end.position), d = end.direction;
+typedef struct {
+    End end[MOST_SPLITS + 2];
+    int count;
+} Ends;
+
+static inline void ends_add(Ends* ends, float3 weight, float3 position, float3 direction, const vitrail_Media* media, bool diffuse) {
+    End* end = &ends->end[ends->count++];
+    end->weight = weight;
+    end->position = position;
+    end->direction = direction;
+    end->media = *media;
+    end->diffuse = diffuse;
+}
+
+// A ray that leaves a surface.
+typedef struct {
+    float3 weight, position, direction;
+    March march;
+    uint events;
+} Path;
+
+static float3 glass_light(const Volume* volume, const vitrail_LightDesc* light, global const float4* map, const End* end, float width) {
+    float3 seen = (float3)(0.0f), weight = end->weight, position = end->position, normal = end->direction;
+    if (!end->diffuse) {
+        const float3 o = to_world(volume->grid, end->position), d = end->direction;
         const float t = surroundings_ground(light, o, d);
         float share = 0.0f;  // of the ground; the rest is sky
         if (t > 0.0f) {
@@ -29,7 +54,7 @@ static float3 glass_light(const Volume* volume, const vitrail_LightDesc* light, 
             normal = (float3)(0.0f, d.y < 0.0f ? 1.0f : -1.0f, 0.0f);
             weight *= share * surroundings_albedo(light, p, width * t);
         }
-        if (share < 1.0f) seen = end.weight * (1.0f - share) * surroundings_environment(light, map, d);
+        if (share < 1.0f) seen = end->weight * (1.0f - share) * surroundings_environment(light, map, d);
         if (!(share > 0.0f)) return seen;
     }
     // Ambient light, and the light's as far as it gets through.
@@ -37,95 +62,149 @@ static float3 glass_light(const Volume* volume, const vitrail_LightDesc* light, 
     const float facing = dot(normal, xyz(light->toLight));
     if (facing > 0.0f)
         arriving += xyz(light->irradiance) * (facing * 0.31830989f) *
-                    march_transmittance(volume, position + normal * 0.75f, xyz(light->toLight), false, 0u);
+                    march_transmittance_from(volume, position + normal * 0.75f, xyz(light->toLight), &end->media);
     return seen + weight * arriving;
 }
 
-// Follows a ray that stands on a first hit through the glass to its two ends; `mirror`: the first surface also shows its mirror image, and
-// what goes through loses as much. Later surfaces do not (one ray a sample).
-static void glass_trace(const Volume* volume, float3 position, float3 normal, float3 flat, uint material, uint triangle, float3 direction,
-                        bool mirror, End ends[2], uint* fate, uint* events) {
-    const vitrail_MaterialDesc first = volume->materials[material];
-    *events = 0u;
-    if (first.colour.w <= 0.5f) {
-        const End end = {xyz(first.colour), position, dot(direction, normal) > 0.0f ? -normal : normal, true};
-        ends[0] = end;
-        *fate = VITRAIL_RAY_OPAQUE;
-        return;
-    }
-    float3 through = xyz(first.colour);
-    March march = {dot(direction, flat) > 0.0f, triangle, MARCH_LEAST, 0};
-    float3 n = optics_facing(direction, normal, flat);
-    float ratio = march.inside ? first.absorption.w : 1.0f / first.absorption.w;
-    if (mirror && !march.inside) {
-        const float reflected = fresnel_reflectance(-dot(direction, n), ratio);
-        const End image = {(float3)(reflected), position, fresnel_reflect(direction, n), false};
-        ends[1] = image;
-        through *= 1.0f - reflected;
-    }
-    uint current = material;
+// Follows a ray that stands on its first hit, `way` world units from the camera, to its ends; the last is that of the ray that crosses where it
+// can, whose fate and events are told. `mirror`: surfaces reflect as Fresnel has it. The first shows a mirror image of the surroundings, and
+// what goes through loses as much; later ones split the ray `splits` times, and from then on pass it on whole by the stronger way. Without
+// splits later surfaces reflect nothing.
+static void glass_trace(const Volume* volume, Crossing hit, float way, float3 direction, bool mirror, int splits, Ends* ends, uint* fate,
+                        uint* events) {
+    Path waiting[MOST_SPLITS];
+    int waits = 0;
+    const bool reflects = mirror && splits > 0;
+    Path path;
+    path.weight = (float3)(1.0f);
+    path.direction = direction;
+    path.march = march_begin(false, 0u, MARCH_LEAST);
+    path.march.media = volume->around;
+    path.events = 0u;
     *fate = VITRAIL_RAY_LEFT;
+    bool main = true;
     for (;;) {
-        if (optics_cross(&direction, n, flat, ratio)) march.inside = !march.inside;
-        ++*events;
-        Crossing hit;
-        if (!march_next(volume, position, direction, &march, &hit)) {
-            if (march.steps >= volume->bound)
+        // On a surface: `hit`, after `way` through what lies before it.
+        vitrail_Media media = path.march.media;
+        const uint before = march_pass(&hit, &media), behind = vitrail_medium(&media);
+        if (before != VITRAIL_AIR) path.weight *= optics_absorb(&volume->materials[before], way);
+        const bool opaque = volume->materials[hit.material].colour.w <= 0.5f,
+                   other = hit.otherMaterial != VITRAIL_AIR && volume->materials[hit.otherMaterial].colour.w <= 0.5f;
+        bool ended = opaque || other || path.events == VITRAIL_MOST_EVENTS, deeper = !hit.inside;
+        if (opaque || other) {
+            const float3 normal = dot(path.direction, hit.normal) > 0.0f ? -hit.normal : hit.normal;
+            ends_add(ends, path.weight * xyz(volume->materials[opaque ? hit.material : hit.otherMaterial].colour), hit.position, normal,
+                     &path.march.media, true);
+            if (main) *fate = VITRAIL_RAY_OPAQUE;
+        } else if (ended) {
+            ends_add(ends, path.weight, hit.position, path.direction, &path.march.media, false);
+            if (main) *fate = VITRAIL_RAY_BOUNDED;
+        } else {
+            path.position = hit.position;
+            path.march.triangle = hit.triangle;
+            path.march.otherTriangle = hit.otherTriangle;
+            path.march.least = MARCH_LEAST;
+            if (before == behind) {
+                path.march.media = media;
+            } else {
+                const float ratio = march_index(volume, before) / march_index(volume, behind);
+                const float3 n = optics_facing(path.direction, hit.normal, hit.flat);
+                const bool first = main && path.events == 0u;
+                ++path.events;
+                bool back = false;  // the whole ray is reflected though it could pass
+                if (mirror && (reflects || (first && !hit.inside))) {
+                    const float reflected = fresnel_reflectance(-dot(path.direction, n), ratio);
+                    if (!reflects) {
+                        ends_add(ends, path.weight * reflected, path.position, fresnel_reflect(path.direction, n), &path.march.media, false);
+                        path.weight *= 1.0f - reflected;
+                    } else if (reflected < 1.0f) {
+                        const float share = reflected * fmax(path.weight.x, fmax(path.weight.y, path.weight.z));
+                        if (splits > 0 && share > LEAST_SHARE) {
+                            --splits;
+                            Path* image = &waiting[waits++];
+                            *image = path;
+                            image->weight *= reflected;
+                            optics_mirror(&image->direction, n, hit.flat);
+                            path.weight *= 1.0f - reflected;
+                        } else {
+                            back = reflected > 0.5f;
+                        }
+                    }
+                }
+                if (back) {
+                    optics_mirror(&path.direction, n, hit.flat);
+                    deeper = hit.inside;
+                } else if (optics_cross(&path.direction, n, hit.flat, ratio)) {
+                    path.march.media = media;
+                    if (!hit.inside) path.weight *= xyz(volume->materials[hit.material].colour);
+                    if (hit.otherMaterial != VITRAIL_AIR && !hit.otherInside) path.weight *= xyz(volume->materials[hit.otherMaterial].colour);
+                } else {
+                    deeper = hit.inside;
+                }
+            }
+        }
+        for (;;) {
+            if (main) *events = path.events;
+            if (ended) {
+                main = false;
+                if (waits == 0) return;
+                path = waiting[--waits];
+                deeper = false;
+                ended = false;
+            }
+            if (march_next(volume, path.position, path.direction, &path.march, &hit)) break;
+            ends_add(ends, path.weight, path.position, path.direction, &path.march.media, false);
+            if (main && path.march.steps >= volume->bound)
                 *fate = VITRAIL_RAY_BOUNDED;
-            else if (march.inside)
+            else if (main && deeper)
                 *fate = VITRAIL_RAY_LOST;
-            break;
+            ended = true;
         }
-        march.inside = hit.inside;
-        march.triangle = hit.triangle;
-        if (!hit.inside || hit.triangle != NO_TRIANGLE) current = hit.material;
-        const vitrail_MaterialDesc m = volume->materials[current], met = volume->materials[hit.material];
-        if (hit.inside) through *= optics_absorb(&m, hit.t * volume->grid->extent.x);
-        if (met.colour.w <= 0.5f) {
-            const End end = {through * xyz(met.colour), hit.position, dot(direction, hit.normal) > 0.0f ? -hit.normal : hit.normal, true};
-            ends[0] = end;
-            *fate = VITRAIL_RAY_OPAQUE;
-            return;
-        }
-        if (*events == VITRAIL_MOST_EVENTS) {
-            *fate = VITRAIL_RAY_BOUNDED;
-            break;
-        }
-        if (!hit.inside) through *= xyz(m.colour);
-        position = hit.position;
-        flat = hit.flat;
-        n = optics_facing(direction, hit.normal, flat);
-        ratio = hit.inside ? m.absorption.w : 1.0f / m.absorption.w;
+        way = hit.t * volume->grid->extent.x;
     }
-    const End end = {through, position, direction, false};
-    ends[0] = end;
+}
+
+// The first hit of a pixel of the G-buffer, and how far it is from the camera in world units. False: there is none.
+static inline bool glass_first(const Volume* volume, const vitrail_CameraDesc* camera, global const uint* nearest, size_t pixel, float3* o,
+                               float3* d, Crossing* hit, float* way) {
+    camera_ray(camera, (uint)(pixel % camera->width), (uint)(pixel / camera->width), o, d);
+    const uint triangle = nearest[pixel];
+    if (triangle == NO_TRIANGLE || !march_first_hit(volume->grid, volume->positions, volume->indices, volume->normals, triangle, *o, *d,
+                                                    &hit->position, &hit->normal, &hit->flat))
+        return false;
+    hit->material = volume->triangleMaterial ? volume->triangleMaterial[triangle] : 0u;
+    hit->triangle = triangle;
+    hit->inside = dot(*d, hit->flat) > 0.0f;
+    hit->otherMaterial = VITRAIL_AIR;
+    hit->otherTriangle = NO_TRIANGLE;
+    hit->otherInside = false;
+    *way = dot(to_world(volume->grid, hit->position) - *o, *d);
+    return true;
 }
 
 // One sample a pixel of the G-buffer: the picture.
-kernel void glass_shade(MARCH_PARAMETERS, const vitrail_LightDesc light, global const float4* map, global uint* status,
+kernel void glass_shade(MARCH_PARAMETERS, const vitrail_LightDesc light, global const float4* map, int splits, global uint* status,
                         global float4* samples, ulong first, ulong count, uint perItem) {
     const Volume volume = MARCH_VOLUME;
     const float width = 2.0f * camera.up.w / (float)camera.height;  // of a pixel at distance 1; the ground's tiles are filtered by it
     FOR_RANGE(i, count, perItem) {
         const size_t pixel = first + i;
-        float3 o, d, position, normal, flat;
-        camera_ray(&camera, (uint)(pixel % camera.width), (uint)(pixel / camera.width), &o, &d);
-        const uint triangle = nearest[pixel];
-        End ends[2];
-        ends[0].weight = (float3)(1.0f);
-        ends[0].position = to_voxel(&grid, o);
-        ends[0].direction = d;
-        ends[0].diffuse = false;
-        ends[1].weight = (float3)(0.0f);
+        float3 o, d;
+        Crossing hit;
+        float way;
+        Ends ends;
+        ends.count = 0;
         uint fate = VITRAIL_RAY_MISSED, events = 0u;
-        if (triangle != 0xffffffffu &&
-            march_first_hit(&grid, positions, indices, normals, triangle, o, d, &position, &normal, &flat))
-            glass_trace(&volume, position, normal, flat, triangleMaterial ? triangleMaterial[triangle] : 0u, triangle, d, true, ends, &fate, &events);
+        if (glass_first(&volume, &camera, nearest, pixel, &o, &d, &hit, &way))
+            glass_trace(&volume, hit, way, d, true, splits, &ends, &fate, &events);
+        else
+            ends_add(&ends, (float3)(1.0f), to_voxel(&grid, o), d, &volume.around, false);
         if (fate == VITRAIL_RAY_LOST) atomic_inc(status + STATUS_LOST);
         if (fate == VITRAIL_RAY_BOUNDED) atomic_inc(status + STATUS_BOUNDED);
         float3 seen = (float3)(0.0f);
-        for (int k = 0; k < 2; ++k)
-            if (ends[k].weight.x + ends[k].weight.y + ends[k].weight.z > 0.0f) seen += glass_light(&volume, &light, map, ends[k], width);
+        for (int k = 0; k < ends.count; ++k)
+            if (ends.end[k].weight.x + ends.end[k].weight.y + ends.end[k].weight.z > 0.0f)
+                seen += glass_light(&volume, &light, map, &ends.end[k], width);
         samples[pixel] = (float4)(seen, 1.0f);
     }
 }
@@ -135,16 +214,17 @@ kernel void glass_ends(MARCH_PARAMETERS, global vitrail_RayEnd* rays, ulong firs
     const Volume volume = MARCH_VOLUME;
     FOR_RANGE(i, count, perItem) {
         const size_t pixel = first + i;
-        float3 o, d, position, normal, flat;
-        camera_ray(&camera, (uint)(pixel % camera.width), (uint)(pixel / camera.width), &o, &d);
-        const uint triangle = nearest[pixel];
-        End ends[2];
-        ends[0].weight = (float3)(1.0f);
-        ends[0].direction = d;
+        float3 o, d;
+        Crossing hit;
+        float way;
+        Ends ends;
+        ends.count = 0;
         uint fate = VITRAIL_RAY_MISSED, events = 0u;
-        if (triangle != 0xffffffffu && march_first_hit(&grid, positions, indices, normals, triangle, o, d, &position, &normal, &flat))
-            glass_trace(&volume, position, normal, flat, triangleMaterial ? triangleMaterial[triangle] : 0u, triangle, d, false, ends, &fate, &events);
-        const End end = ends[0];
+        if (glass_first(&volume, &camera, nearest, pixel, &o, &d, &hit, &way))
+            glass_trace(&volume, hit, way, d, false, 0, &ends, &fate, &events);
+        else
+            ends_add(&ends, (float3)(1.0f), to_voxel(&grid, o), d, &volume.around, false);
+        const End end = ends.end[0];
         const vitrail_RayEnd out = {{end.direction.x, end.direction.y, end.direction.z}, fate, {end.weight.x, end.weight.y, end.weight.z}, events};
         rays[pixel] = out;
     }

@@ -50,6 +50,10 @@ struct Glass {
     GlassMethod method{};
     Ground ground{};
     std::uint32_t samples = 2;  ///< camera samples along each side of a pixel, 1 to 4
+    /// How often a sample's ray splits into its refracted and its reflected part (Fresnel), 0 to 8. A split ray's images are followed through
+    /// the voxels, the first surface's too; past the last split, and where less than 1/256 would be reflected, the whole ray goes the
+    /// stronger way, so that no light is lost or made. 0: only the first surface reflects, and only the surroundings.
+    std::uint32_t reflections = 0;
 };
 
 /// `scene.mesh` in world space with normals (vitrail::withSmoothNormals makes them); materials with transmission above 0.5 are glass. At most
