@@ -1,6 +1,7 @@
 #include "light/march.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include <vitrail/voxelize/lists.h>
@@ -25,6 +26,52 @@ float resolutionOf(const GlassMethod& method) {
 /// Whether triangles name more than one material.
 bool several(const Mesh& mesh) {
     return std::adjacent_find(mesh.materials.begin(), mesh.materials.end(), std::not_equal_to<>()) != mesh.materials.end();
+}
+
+/// The texture's place among `texels`, to which it is added the first time; `mean` gets the mean of its colours.
+vitrail_uint4 packTexture(const Picture& picture, std::vector<std::uint32_t>& texels, Float4& mean) {
+    const vitrail_uint4 place{static_cast<std::uint32_t>(texels.size()), picture.width, picture.height, 0};
+    glm::dvec4 sum(0.0);
+    for (const Float4& p : picture.pixels) {
+        std::uint32_t word = 0;
+        for (int c = 0; c < 4; ++c) {
+            const float value = std::clamp(p[c], 0.0f, 1.0f);
+            word |= static_cast<std::uint32_t>(std::lround(255.0f * (c < 3 ? std::sqrt(value) : value))) << (8 * c);
+        }
+        texels.push_back(word);
+        sum += glm::dvec4(p);
+    }
+    mean = Float4(sum / std::max(1.0, static_cast<double>(picture.pixels.size())));
+    return place;
+}
+
+std::vector<vitrail_MaterialDesc> describeMaterials(const Scene& scene, std::vector<std::uint32_t>& texels) {
+    std::vector<std::pair<vitrail_uint4, Float4>> packed(scene.textures.size(), {vitrail_uint4{}, Float4(1.0f)});
+    const auto texture = [&](int index, Float4& mean) {
+        if (index < 0 || static_cast<std::size_t>(index) >= packed.size() || scene.mesh.texcoords.empty()) return vitrail_uint4{};
+        auto& one = packed[static_cast<std::size_t>(index)];
+        const Picture& picture = scene.textures[static_cast<std::size_t>(index)];
+        if (one.first.y == 0 && !picture.empty()) one.first = packTexture(picture, texels, one.second);
+        mean = one.second;
+        return one.first;
+    };
+    std::vector<vitrail_MaterialDesc> table;
+    for (const Material& m : scene.materials) {
+        vitrail_MaterialDesc out{};
+        out.colour = with(m.baseColour, m.transmission);
+        out.absorption = with(m.absorption(), m.indexOfRefraction);
+        const float cutoff = m.alphaMode == AlphaMode::mask ? m.alphaCutoff : m.alphaMode == AlphaMode::blend ? -1.0f : 0.0f;
+        out.surface = {m.roughness, m.transmission > 0.5f && m.thickness == 0.0f ? 1.0f : 0.0f, m.alpha, cutoff};
+        Float4 colour(1.0f), detail(1.0f);
+        out.base = texture(m.baseColourTexture, colour);
+        out.detail = texture(m.surfaceTexture, detail);
+        out.mean = {colour.x, colour.y, colour.z, detail.x};
+        const float c = std::cos(m.textureRotation), s = std::sin(m.textureRotation);
+        out.textureU = {c * m.textureScale.x, -s * m.textureScale.y, m.textureOffset.x, 0};
+        out.textureV = {s * m.textureScale.x, c * m.textureScale.y, m.textureOffset.y, 0};
+        table.push_back(out);
+    }
+    return table;
 }
 
 }  // namespace
@@ -57,7 +104,7 @@ vitrail_Media mediaAt(const Scene& scene, const Float3& eye) {
     const MeshView mesh = scene.mesh.view();
     for (std::uint32_t i = 0; i < mesh.triangleCount(); ++i) {
         const std::uint32_t material = mesh.materials.empty() ? 0 : mesh.materials[i];
-        if (scene.materials[material].transmission <= 0.5f) continue;
+        if (scene.materials[material].transmission <= 0.5f || scene.materials[material].thickness == 0.0f) continue;
         const Double3 a(mesh.positions[mesh.index(3 * i)]), u = Double3(mesh.positions[mesh.index(3 * i + 1)]) - a,
                       w = Double3(mesh.positions[mesh.index(3 * i + 2)]) - a, p = glm::cross(d, w), r = o - a, q = glm::cross(r, u);
         const double across = glm::dot(u, p), b = glm::dot(r, p) / across, c = glm::dot(d, q) / across, t = glm::dot(w, q) / across;
@@ -84,8 +131,13 @@ MarchVolume marchVolume(Call& call, const Scene& scene, const Camera& camera, co
     const Grid grid = Grid::fit(scene.mesh.bounds(), static_cast<std::uint32_t>(resolutionOf(method)));
     DeviceMesh mesh(queue, scene.mesh.view());
     GBuffer gbuffer = rasterize(queue, mesh, camera);
-    std::vector<vitrail_MaterialDesc> table;
-    for (const Material& m : scene.materials) table.push_back({with(m.baseColour, m.transmission), with(m.absorption(), m.indexOfRefraction)});
+    std::vector<std::uint32_t> packed;
+    const std::vector<vitrail_MaterialDesc> table = describeMaterials(scene, packed);
+    Buffer<std::uint32_t> texels;
+    if (!packed.empty()) {
+        texels = queue.workspace().take<std::uint32_t>(packed.size(), "textures");
+        call.upload(texels, packed.data(), packed.size());
+    }
     Buffer<vitrail_MaterialDesc> materials = queue.workspace().take<vitrail_MaterialDesc>(table.size(), "materials");
     call.upload(materials, table.data(), table.size());
     const Uint3 size = grid.size();
@@ -93,13 +145,13 @@ MarchVolume marchVolume(Call& call, const Scene& scene, const Camera& camera, co
     if (std::holds_alternative<Exact>(method)) {
         VoxelLists lists = voxelizeLists(queue, mesh, grid);
         return {grid, std::move(mesh), std::move(lists.voxels), {}, {}, {}, std::move(lists.triangles), std::move(lists.ends), std::move(gbuffer),
-                std::move(materials), bound, mediaAt(scene, camera.eye)};
+                std::move(materials), std::move(texels), bound, mediaAt(scene, camera.eye)};
     }
     SurfaceVoxels surface = voxelizeSurface(queue, mesh, grid);
     // Bodies in one another are inside where even-odd has them outside.
     Voxels solid = several(scene.mesh) ? voxelize(queue, mesh, grid, SolidWinding{}) : voxelize(queue, mesh, grid, Solid{});
     return {grid, std::move(mesh), std::move(surface.voxels), std::move(surface.surface), std::move(surface.planes), std::move(solid), {}, {},
-            std::move(gbuffer), std::move(materials), bound, mediaAt(scene, camera.eye)};
+            std::move(gbuffer), std::move(materials), std::move(texels), bound, mediaAt(scene, camera.eye)};
 }
 
 Image marchPicture(Queue& queue, const Scene& scene, const Camera& camera, const GlassMethod& method, std::uint32_t perSide, const char* name,

@@ -26,6 +26,7 @@ struct MarchVolume {
     Buffer<std::uint32_t> triangles, ends;         // of Exact
     GBuffer gbuffer;
     Buffer<vitrail_MaterialDesc> materials;
+    Buffer<std::uint32_t> texels;  ///< of all textures, RGBA of 8 bits; colours as their square roots
     std::int32_t bound;  ///< a walk crosses at most this many cells on four straight ways through the grid; a march past it is ended and counted
     vitrail_Media around;  ///< the camera
 };
@@ -55,7 +56,8 @@ void launchMarch(Call& call, const char* file, const char* kernel, const MarchVo
         call.launchRange(program, kernel, count, volume.grid.desc(), volume.gbuffer.camera, volume.mesh.positions(), volume.mesh.indices(),
                          volume.mesh.normals(), volume.mesh.materials(), volume.gbuffer.triangle, voxels.bits(), voxels.bricks(), voxels.rank(),
                          voxels.mip(), volume.surface, volume.planes, solidBits, solidBricks, voxels.materialBuffer(), volume.materials,
-                         voxels.countBuffer(), volume.triangles, volume.ends, volume.bound, volume.around, args..., first);
+                         voxels.countBuffer(), volume.triangles, volume.ends, volume.bound, volume.around, volume.mesh.texcoords(), volume.texels,
+                         args..., first);
     }
 }
 

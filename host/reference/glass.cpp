@@ -114,8 +114,9 @@ public:
             }
             if (other.triangle != kNone && !vitrail_first(one.material, one.inside, other.material, other.inside)) std::swap(one, other);
             vitrail_Media past = media;
-            const std::uint32_t before = vitrail_pass(&past, one.material, one.inside);
-            if (other.triangle != kNone) vitrail_pass(&past, other.material, other.inside);
+            std::uint32_t before = vitrail_medium(&media);
+            if (!isThin(one)) before = vitrail_pass(&past, one.material, one.inside);
+            if (other.triangle != kNone && !isThin(other)) vitrail_pass(&past, other.material, other.inside);
             const std::uint32_t behind = vitrail_medium(&past);
             if (before != VITRAIL_AIR) through *= glm::exp(-Double3(scene_.materials[before].absorption()) * one.length);
             const Surface* opaque = isOpaque(one) ? &one : isOpaque(other) ? &other : nullptr;
@@ -131,6 +132,11 @@ public:
             end.fate = VITRAIL_RAY_LEFT;
             origin += direction * one.length;
             least = other.triangle != kNone ? touch_ : least_;
+            if (isThin(one)) {
+                through *= Double3(scene_.materials[one.material].baseColour);
+                ++end.events;
+                continue;
+            }
             if (before == behind) {
                 media = past;
                 continue;
@@ -161,7 +167,7 @@ public:
         for (std::uint32_t t = triangles_.next(eye, direction, least); t != kNone; t = triangles_.next(eye, direction, least)) {
             const Surface one(*this, t, eye, direction);
             least = std::max(one.length, least) + least_;
-            if (isOpaque(one)) continue;
+            if (isOpaque(one) || isThin(one)) continue;
             const auto last = std::find(open.rbegin(), open.rend(), one.material);
             if (!one.inside)
                 open.push_back(one.material);
@@ -199,6 +205,7 @@ private:
     };
 
     bool isOpaque(const Surface& one) const { return one.triangle != kNone && scene_.materials[one.material].transmission <= 0.5f; }
+    bool isThin(const Surface& one) const { return scene_.materials[one.material].thickness == 0.0f; }
     double index(std::uint32_t medium) const { return medium == VITRAIL_AIR ? 1.0 : scene_.materials[medium].indexOfRefraction; }
 
     Double3 normalAt(const Surface& s, const Double3& position) const {

@@ -33,6 +33,8 @@ typedef struct {
     global const float* normals;
     global const uint* triangleMaterial;
     vitrail_Media around;  // the camera
+    global const float2* texcoords;
+    global const uchar4* texels;
 } Volume;
 
 #define NO_TRIANGLE 0xffffffffu
@@ -43,6 +45,8 @@ typedef struct {
     float3 position, normal, flat;  // voxel coordinates; unit normals, outward: for shading, and of the plane
     uint material, triangle;
     bool inside;  // whether the ray came from within
+    bool placed;  // whether `texcoord` is known
+    float2 texcoord;
     // A surface of another material in the same place, or VITRAIL_AIR, passed after the first (vitrail_first).
     uint otherMaterial, otherTriangle;
     bool otherInside;
@@ -67,10 +71,14 @@ static inline March march_begin(bool inside, uint material, float least) {
     return march;
 }
 
-// The medium before a crossing; `media` becomes what is behind.
-static inline uint march_pass(const Crossing* hit, vitrail_Media* media) {
-    const uint before = vitrail_pass(media, hit->material, hit->inside);
-    if (hit->otherMaterial != VITRAIL_AIR) vitrail_pass(media, hit->otherMaterial, hit->otherInside);
+static inline bool march_thin(const Volume* volume, uint material) { return volume->materials[material].surface.y > 0.0f; }
+
+// The medium before a crossing; `media` becomes what is behind. Thin walls hold nothing.
+static inline uint march_pass(const Volume* volume, const Crossing* hit, vitrail_Media* media) {
+    uint before = vitrail_medium(media);
+    if (!march_thin(volume, hit->material)) before = vitrail_pass(media, hit->material, hit->inside);
+    if (hit->otherMaterial != VITRAIL_AIR && !march_thin(volume, hit->otherMaterial))
+        vitrail_pass(media, hit->otherMaterial, hit->otherInside);
     return before;
 }
 
@@ -90,10 +98,11 @@ static inline float3 to_world(const vitrail_GridDesc* grid, float3 p) { return p
         global const uint2 *bricks, global const uint *rank, global const uchar *mip, global const vitrail_SurfaceVoxel *surface,           \
         global const vitrail_SurfaceVoxel *planes, global const uint *solid, global const uint2 *solidBricks,                               \
         global const uint *voxelMaterial, global const vitrail_MaterialDesc *materials, global const uint *counts, global const uint *list, \
-        global const uint *end, int bound, const vitrail_Media around
+        global const uint *end, int bound, const vitrail_Media around, global const float2 *texcoords,            \
+        global const uchar4 *texels
 #define MARCH_VOLUME                                                                                                                         \
     {&grid, words, bricks, rank, mip, surface, planes, solid, solidBricks, voxelMaterial, materials, bound, counts, list, end, positions, indices, \
-     normals, triangleMaterial, around}
+     normals, triangleMaterial, around, texcoords, texels}
 
 // The shading normal there, or the flat one.
 static inline float3 march_shading(global const float* normals, const uint index[3], const float share[3], float3 flat) {
@@ -105,6 +114,13 @@ static inline float3 march_shading(global const float* normals, const uint index
     }
     const float length = sqrt(dot(m, m));
     return length > 0.0f ? m / length : flat;
+}
+
+static inline void march_place(const Volume* volume, const uint index[3], const float share[3], Crossing* hit) {
+    hit->placed = volume->texcoords != 0;
+    hit->texcoord = (float2)(0.0f);
+    if (!hit->placed) return;
+    for (int k = 0; k < 3; ++k) hit->texcoord += volume->texcoords[index[k]] * share[k];
 }
 
 // The triangle that the pixel sees, exactly: position and outward shading normal in voxel coordinates.

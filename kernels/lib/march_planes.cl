@@ -65,7 +65,7 @@ static inline bool march_next(const Volume* volume, float3 origin, float3 direct
     hit->inside = within;
     hit->triangle = hit->otherTriangle = NO_TRIANGLE;
     hit->otherMaterial = VITRAIL_AIR;
-    hit->otherInside = false;
+    hit->otherInside = hit->placed = false;
     bool found = false, away = false;  // away: past a cell without surface
     float aside = 2.0f;                // how far outside its cell the candidate in `hit` was met; 2: there is none
     if (dda_start(&dda, volume->grid, origin, direction, fmax(tLeast - REACH, 0.0f))) {
@@ -96,7 +96,7 @@ static inline bool march_next(const Volume* volume, float3 origin, float3 direct
                 for (int k = 0; k < count; ++k)
                     march_facet(split ? volume->planes[first.normal + (uint)k] : first, corner, origin, direction, &facets[k]);
                 const uint material = volume->voxelMaterial[index];
-                const bool opaque = volume->materials[material].colour.w <= 0.5f, inside = vitrail_within(&march->media, material) != 0;
+                const bool opaque = volume->materials[material].colour.w <= 0.5f || march_thin(volume, material), inside = vitrail_within(&march->media, material) != 0;
                 int best = -1, other = -1;
                 for (int k = 0; k < count; ++k) {
                     const float t = facets[k].t;

@@ -124,6 +124,7 @@ static inline bool march_next(const Volume* volume, float3 origin, float3 direct
     const float3 across = cross(v[1] - v[0], v[2] - v[0]);
     hit->flat = across / sqrt(dot(across, across));
     hit->normal = march_shading(volume->normals, corner, share, hit->flat);
+    march_place(volume, corner, share, hit);
     hit->triangle = nearest;
     hit->material = material;
     hit->inside = dot(direction, hit->flat) > 0.0f;

@@ -39,7 +39,71 @@ static inline void optics_mirror(float3* d, float3 facing, float3 flat) {
     *d = out;
 }
 
+// A number in [0, 1) from three, the same in every run (PCG, Jarzynski & Olano 2020).
+static inline float optics_hash(uint a, uint b, uint c) {
+    uint h = a * 747796405u + 2891336453u;
+    h = ((h >> ((h >> 28) + 4u)) ^ h) * 277803737u + b * 1664525u;
+    h = h * 747796405u + 2891336453u;
+    h = ((h >> ((h >> 28) + 4u)) ^ h) * 277803737u + c * 22695477u;
+    h = h * 747796405u + 2891336453u;
+    h = ((h >> ((h >> 28) + 4u)) ^ h) * 277803737u;
+    return (float)((h >> 22) ^ h >> 8 & 0xffffffu) * 5.9604645e-8f;
+}
+
+// The normal of a facet of a rough surface (GGX, Walter et al. 2007, equations 35 and 36), alpha = roughness^2, turned against d.
+static inline float3 optics_facet(float3 n, float3 d, float roughness, float u, float v) {
+    const float alpha = roughness * roughness, tangent = alpha * sqrt(u / (1.0f - u)), cosine = 1.0f / sqrt(1.0f + tangent * tangent);
+    const float sine = tangent * cosine, turn = 6.2831853f * v;
+    float3 t, b;
+    frame_tangents(n, &t, &b);
+    const float3 m = t * (sine * cos(turn)) + b * (sine * sin(turn)) + n * cosine;
+    return dot(d, m) < -VITRAIL_GRAZING ? m : n;
+}
+
 static inline float3 optics_absorb(global const vitrail_MaterialDesc* m, float length) { return exp(-xyz(m->absorption) * length); }
+
+// What a surface is like where it was met.
+typedef struct {
+    float3 colour;
+    float cover;  // share that is not there to be passed; alpha
+    float transmission, roughness;
+} Look;
+
+// Bilinear, repeated; colours as their square roots.
+static inline float4 optics_texel(global const uchar4* texels, uint4 texture, float u, float v) {
+    const float x = (u - floor(u)) * (float)texture.y - 0.5f, y = (v - floor(v)) * (float)texture.z - 0.5f;
+    const float fx = floor(x), fy = floor(y), a = x - fx, b = y - fy;
+    const uint x0 = fx < 0.0f ? texture.y - 1u : min((uint)fx, texture.y - 1u), y0 = fy < 0.0f ? texture.z - 1u : min((uint)fy, texture.z - 1u);
+    const uint x1 = x0 + 1u < texture.y ? x0 + 1u : 0u, y1 = y0 + 1u < texture.z ? y0 + 1u : 0u;
+    global const uchar4* base = texels + texture.x;
+    const float4 top = convert_float4(base[y0 * texture.y + x0]) * (1.0f - a) + convert_float4(base[y0 * texture.y + x1]) * a;
+    const float4 bottom = convert_float4(base[y1 * texture.y + x0]) * (1.0f - a) + convert_float4(base[y1 * texture.y + x1]) * a;
+    return (top * (1.0f - b) + bottom * b) / 255.0f;
+}
+
+static inline Look optics_look(const Volume* volume, const Crossing* hit) {
+    const vitrail_MaterialDesc m = volume->materials[hit->material];
+    Look look = {xyz(m.colour), m.surface.z, m.colour.w, m.surface.x};
+    if (!hit->placed) {
+        look.colour *= xyz(m.mean);
+        look.transmission *= m.mean.w;
+    } else {
+        const float u = m.textureU.x * hit->texcoord.x + m.textureU.y * hit->texcoord.y + m.textureU.z;
+        const float v = m.textureV.x * hit->texcoord.x + m.textureV.y * hit->texcoord.y + m.textureV.z;
+        if (m.base.y != 0u) {
+            const float4 texel = optics_texel(volume->texels, m.base, u, v);
+            look.colour *= xyz(texel) * xyz(texel);
+            look.cover *= texel.w;
+        }
+        if (m.detail.y != 0u) {
+            const float4 texel = optics_texel(volume->texels, m.detail, u, v);
+            look.transmission *= texel.x * texel.x;
+            look.roughness *= texel.y * texel.y;
+        }
+    }
+    if (m.surface.w >= 0.0f) look.cover = look.cover < m.surface.w ? 0.0f : 1.0f;
+    return look;
+}
 
 // Transmittance from a point inside of `media` straight to the light: Beer-Lambert in each body, 1 - F at each crossing, 0 behind opaque voxels.
 static float3 march_transmittance_from(const Volume* volume, float3 p, float3 toLight, const vitrail_Media* media) {
@@ -49,15 +113,26 @@ static float3 march_transmittance_from(const Volume* volume, float3 p, float3 to
     for (int event = 0; event < VITRAIL_MOST_EVENTS; ++event) {
         Crossing hit;
         if (!march_next(volume, p, toLight, &march, &hit)) return through;
-        if (volume->materials[hit.material].colour.w <= 0.5f) return (float3)(0.0f);
-        if (hit.otherMaterial != VITRAIL_AIR && volume->materials[hit.otherMaterial].colour.w <= 0.5f) return (float3)(0.0f);
-        const uint before = march_pass(&hit, &march.media);
-        if (before != VITRAIL_AIR) through *= optics_absorb(&volume->materials[before], (hit.t - march.least) * volume->grid->extent.x);
-        const float ratio = march_index(volume, before) / march_index(volume, vitrail_medium(&march.media));
-        // Both sides by the same number: the way is straight.
-        through *= 1.0f - fresnel_reflectance(fmax(fabs(dot(toLight, hit.normal)), VITRAIL_GRAZING), fmin(ratio, 1.0f / ratio));
         march.triangle = hit.triangle;
         march.otherTriangle = hit.otherTriangle;
+        const Look look = optics_look(volume, &hit);
+        if (look.cover == 0.0f || volume->materials[hit.material].colour.w <= 0.5f) {
+            if (look.cover == 1.0f) return (float3)(0.0f);
+            through *= 1.0f - look.cover;
+            const uint medium = vitrail_medium(&march.media);
+            if (medium != VITRAIL_AIR) through *= optics_absorb(&volume->materials[medium], (hit.t - march.least) * volume->grid->extent.x);
+            march.least = hit.t;
+            continue;
+        }
+        if (hit.otherMaterial != VITRAIL_AIR && volume->materials[hit.otherMaterial].colour.w <= 0.5f) return (float3)(0.0f);
+        const uint before = march_pass(volume, &hit, &march.media);
+        if (before != VITRAIL_AIR) through *= optics_absorb(&volume->materials[before], (hit.t - march.least) * volume->grid->extent.x);
+        const float ratio = march_index(volume, before) / march_index(volume, vitrail_medium(&march.media));
+        const bool thin = march_thin(volume, hit.material);
+        // Both sides by the same number: the way is straight.
+        through *= 1.0f - fresnel_reflectance(fmax(fabs(dot(toLight, hit.normal)), VITRAIL_GRAZING),
+                                              thin ? 1.0f / march_index(volume, hit.material) : fmin(ratio, 1.0f / ratio));
+        if (thin) through *= look.colour * look.transmission;
         march.least = hit.t;
     }
     return through;

@@ -8,6 +8,7 @@
 #define STATUS_BOUNDED 1  // met the bound of events or steps
 
 #define MOST_SPLITS 8  // of a sample's rays, see vitrail/light/glass.h
+#define MOST_ENDS 16
 #define LEAST_SHARE 0.00390625f  // of a reflection that is worth a ray of its own
 
 // Where a path of light ends: at a diffuse point of the scene, or in the surroundings. A sample has at most one more than it has rays (the
@@ -21,7 +22,7 @@ typedef struct {
 } End;
 
 typedef struct {
-    End end[MOST_SPLITS + 2];
+    End end[MOST_ENDS];
     int count;
 } Ends;
 
@@ -71,7 +72,7 @@ static float3 glass_light(const Volume* volume, const vitrail_LightDesc* light, 
 // what goes through loses as much; later ones split the ray `splits` times, and from then on pass it on whole by the stronger way. Without
 // splits later surfaces reflect nothing.
 static void glass_trace(const Volume* volume, Crossing hit, float way, float3 direction, bool mirror, int splits, Ends* ends, uint* fate,
-                        uint* events) {
+                        uint* events, uint sample) {
     Path waiting[MOST_SPLITS];
     int waits = 0;
     const bool reflects = mirror && splits > 0;
@@ -86,33 +87,54 @@ static void glass_trace(const Volume* volume, Crossing hit, float way, float3 di
     for (;;) {
         // On a surface: `hit`, after `way` through what lies before it.
         vitrail_Media media = path.march.media;
-        const uint before = march_pass(&hit, &media), behind = vitrail_medium(&media);
+        const uint before = march_pass(volume, &hit, &media), behind = vitrail_medium(&media);
         if (before != VITRAIL_AIR) path.weight *= optics_absorb(&volume->materials[before], way);
-        const bool opaque = volume->materials[hit.material].colour.w <= 0.5f,
+        const bool opaque = volume->materials[hit.material].colour.w <= 0.5f, thin = march_thin(volume, hit.material),
                    other = hit.otherMaterial != VITRAIL_AIR && volume->materials[hit.otherMaterial].colour.w <= 0.5f;
-        bool ended = opaque || other || path.events == VITRAIL_MOST_EVENTS, deeper = !hit.inside;
-        if (opaque || other) {
-            const float3 normal = dot(path.direction, hit.normal) > 0.0f ? -hit.normal : hit.normal;
-            ends_add(ends, path.weight * xyz(volume->materials[opaque ? hit.material : hit.otherMaterial].colour), hit.position, normal,
+        Look look = optics_look(volume, &hit);
+        if (!mirror) {
+            // As it is judged: each material as a whole, polished.
+            look.colour = xyz(volume->materials[hit.material].colour);
+            look.cover = 1.0f;
+            look.transmission = 1.0f;
+            look.roughness = 0.0f;
+        }
+        if (other) look.colour = xyz(volume->materials[hit.otherMaterial].colour);
+        // The share that ends here on something diffuse. Without room for another end all of it does, or nothing.
+        float solid = opaque ? look.cover : look.cover * (1.0f - look.transmission);
+        if (other) solid = 1.0f;
+        if (solid > 0.996f || (ends->count >= MOST_ENDS - MOST_SPLITS - 2 && solid > 0.5f)) solid = 1.0f;
+        if (solid < 0.004f || ends->count >= MOST_ENDS - MOST_SPLITS - 2) solid = floor(solid);
+        bool ended = solid == 1.0f, deeper = !hit.inside;
+        if (solid > 0.0f) {
+            ends_add(ends, path.weight * look.colour * solid, hit.position, dot(path.direction, hit.normal) > 0.0f ? -hit.normal : hit.normal,
                      &path.march.media, true);
-            if (main) *fate = VITRAIL_RAY_OPAQUE;
-        } else if (ended) {
+            path.weight *= 1.0f - solid;
+            if (ended && main) *fate = VITRAIL_RAY_OPAQUE;
+        }
+        if (!ended && path.events == VITRAIL_MOST_EVENTS) {
+            ended = true;
             ends_add(ends, path.weight, hit.position, path.direction, &path.march.media, false);
             if (main) *fate = VITRAIL_RAY_BOUNDED;
-        } else {
+        }
+        if (!ended) {
             path.position = hit.position;
             path.march.triangle = hit.triangle;
             path.march.otherTriangle = hit.otherTriangle;
             path.march.least = MARCH_LEAST;
-            if (before == behind) {
+            if (opaque || look.cover == 0.0f) {
+                deeper = path.march.media.depth > 0u;  // past what is not there
+            } else if (before == behind && !thin) {
                 path.march.media = media;
             } else {
-                const float ratio = march_index(volume, before) / march_index(volume, behind);
-                const float3 n = optics_facing(path.direction, hit.normal, hit.flat);
+                const float ratio = thin ? 1.0f / march_index(volume, hit.material) : march_index(volume, before) / march_index(volume, behind);
+                float3 n = optics_facing(path.direction, hit.normal, hit.flat);
+                if (look.roughness > 0.0f)
+                    n = optics_facet(n, path.direction, look.roughness, optics_hash(sample, path.events, 0u), optics_hash(sample, path.events, 1u));
                 const bool first = main && path.events == 0u;
                 ++path.events;
                 bool back = false;  // the whole ray is reflected though it could pass
-                if (mirror && (reflects || (first && !hit.inside))) {
+                if (mirror && (reflects || (first && (thin || !hit.inside)))) {
                     const float reflected = fresnel_reflectance(-dot(path.direction, n), ratio);
                     if (!reflects) {
                         ends_add(ends, path.weight * reflected, path.position, fresnel_reflect(path.direction, n), &path.march.media, false);
@@ -134,9 +156,17 @@ static void glass_trace(const Volume* volume, Crossing hit, float way, float3 di
                 if (back) {
                     optics_mirror(&path.direction, n, hit.flat);
                     deeper = hit.inside;
+                } else if (thin) {
+                    // Straight on; rough, the mirror image of what a facet reflects.
+                    if (look.roughness > 0.0f) {
+                        optics_mirror(&path.direction, n, hit.flat);
+                        path.direction -= hit.flat * (2.0f * dot(path.direction, hit.flat));
+                    }
+                    path.weight *= look.colour;
+                    deeper = false;
                 } else if (optics_cross(&path.direction, n, hit.flat, ratio)) {
                     path.march.media = media;
-                    if (!hit.inside) path.weight *= xyz(volume->materials[hit.material].colour);
+                    if (!hit.inside) path.weight *= look.colour;
                     if (hit.otherMaterial != VITRAIL_AIR && !hit.otherInside) path.weight *= xyz(volume->materials[hit.otherMaterial].colour);
                 } else {
                     deeper = hit.inside;
@@ -178,6 +208,20 @@ static inline bool glass_first(const Volume* volume, const vitrail_CameraDesc* c
     hit->otherMaterial = VITRAIL_AIR;
     hit->otherTriangle = NO_TRIANGLE;
     hit->otherInside = false;
+    uint index[3];
+    float share[3];
+    float3 v[3];
+    for (int k = 0; k < 3; ++k) {
+        index[k] = volume->indices[3 * (size_t)triangle + k];
+        const size_t at = 3 * (size_t)index[k];
+        v[k] = to_voxel(volume->grid, (float3)(volume->positions[at], volume->positions[at + 1], volume->positions[at + 2]));
+    }
+    const float3 across = cross(v[1] - v[0], v[2] - v[0]), r = hit->position - v[0];
+    const float square = dot(across, across);
+    share[1] = dot(cross(r, v[2] - v[0]), across) / square;
+    share[2] = dot(cross(v[1] - v[0], r), across) / square;
+    share[0] = 1.0f - share[1] - share[2];
+    march_place(volume, index, share, hit);
     *way = dot(to_world(volume->grid, hit->position) - *o, *d);
     return true;
 }
@@ -196,7 +240,7 @@ kernel void glass_shade(MARCH_PARAMETERS, const vitrail_LightDesc light, global 
         ends.count = 0;
         uint fate = VITRAIL_RAY_MISSED, events = 0u;
         if (glass_first(&volume, &camera, nearest, pixel, &o, &d, &hit, &way))
-            glass_trace(&volume, hit, way, d, true, splits, &ends, &fate, &events);
+            glass_trace(&volume, hit, way, d, true, splits, &ends, &fate, &events, (uint)pixel);
         else
             ends_add(&ends, (float3)(1.0f), to_voxel(&grid, o), d, &volume.around, false);
         if (fate == VITRAIL_RAY_LOST) atomic_inc(status + STATUS_LOST);
@@ -221,7 +265,7 @@ kernel void glass_ends(MARCH_PARAMETERS, global vitrail_RayEnd* rays, ulong firs
         ends.count = 0;
         uint fate = VITRAIL_RAY_MISSED, events = 0u;
         if (glass_first(&volume, &camera, nearest, pixel, &o, &d, &hit, &way))
-            glass_trace(&volume, hit, way, d, false, 0, &ends, &fate, &events);
+            glass_trace(&volume, hit, way, d, false, 0, &ends, &fate, &events, 0u);
         else
             ends_add(&ends, (float3)(1.0f), to_voxel(&grid, o), d, &volume.around, false);
         const End end = ends.end[0];

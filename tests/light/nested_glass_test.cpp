@@ -85,6 +85,7 @@ TEST(NestedGlass, ConcentricBallsTurnRaysByBouguer) {
         add(scene, "sphere", 1.0f, Float3(0), glassOf(one.outer));
         add(scene, "sphere", 0.6f, Float3(0), glassOf(one.inner));
         const Camera camera = frontal(1.0f, 64);
+        if (getenv("RATES")) printf("bouguer %f %f %f\n", shareOfBouguer(scene, 0.5, 0.3, reference::glass(scene, camera), camera), shareOfBouguer(scene, 0.5, 0.3, glassRays(queue(), scene, camera, Exact{.resolution = 64}).ends, camera), shareOfBouguer(scene, 0.5, 0.3, glassRays(queue(), scene, camera, Planes{.resolution = 96}).ends, camera));
         EXPECT_GE(shareOfBouguer(scene, 0.5, 0.3, reference::glass(scene, camera), camera), one.truth) << one.inner;
         EXPECT_GE(shareOfBouguer(scene, 0.5, 0.3, glassRays(queue(), scene, camera, Exact{.resolution = 64}).ends, camera), one.exact) << one.inner;
         EXPECT_GE(shareOfBouguer(scene, 0.5, 0.3, glassRays(queue(), scene, camera, Planes{.resolution = 96}).ends, camera), one.planes) << one.inner;
@@ -151,6 +152,7 @@ TEST(NestedGlass, BodiesThatTouchLeaveNoAir) {
             EXPECT_LT(glm::length(direction(end) - straight), 1e-5);
         }
     }
+    if (getenv("RATES")) printf("touch %f %f\n", errorsOf(scene, Exact{.resolution = 128}).correct, errorsOf(scene, Planes{.resolution = 128}).correct);
     // Along the seam and through its edges. Rate: a hundredth below what was measured.
     EXPECT_GE(errorsOf(scene, Exact{.resolution = 128}).correct, 0.98);
 }
@@ -165,7 +167,7 @@ TEST(NestedGlass, AirInGlassIsABodyOrAHollow) {
     for (std::size_t t = 0; t < body.mesh.triangleCount(); ++t)
         if (body.mesh.materials[t] == 1) {
             std::swap(hollow.mesh.indices[3 * t], hollow.mesh.indices[3 * t + 1]);
-            for (int k = 0; k < 3; ++k) hollow.mesh.normals[hollow.mesh.indices[3 * t + k]] = -body.mesh.normals[body.mesh.indices[3 * t + k]];
+            for (std::size_t k = 3 * t; k < 3 * t + 3; ++k) hollow.mesh.normals[body.mesh.indices[k]] = -body.mesh.normals[body.mesh.indices[k]];
         }
     const Camera camera = Camera::around(body.mesh.bounds(), 33, 22, 64, 64);
     // The same numbers in the same order: the same rays.
@@ -179,6 +181,7 @@ TEST(NestedGlass, IsWhereTheReferenceHasIt) {
     Scene scene;
     add(scene, "sphere", 1.0f, Float3(0), glassOf(1.14f));
     add(scene, "torus", 0.45f, Float3(0.05f, 0, 0), glassOf(1.5f, Float3(0.1f, 0.5f, 0.02f)));
+    if (getenv("RATES")) for (float r : {64.0f, 128.0f, 256.0f}) { const RayErrors exact = errorsOf(scene, Exact{.resolution = r}), planes = errorsOf(scene, Planes{.resolution = r}); printf("ring %g %f %f %f\n", r, exact.correct, planes.correct, planes.transmittanceMean); for (int k=0;k<7;++k) printf(" %zu", (size_t)planes.faults[k]); puts(""); }
     const RayErrors exact = errorsOf(scene, Exact{.resolution = 128}), planes = errorsOf(scene, Planes{.resolution = 128});
     EXPECT_GE(exact.correct, 0.985);
     EXPECT_GE(planes.correct, 0.96);
@@ -200,6 +203,7 @@ TEST(NestedGlass, ACameraMayStandInside) {
         // Straight back through the middle.
         const double inner = z < 0.2f ? z + 0.2 : 0.4, outer = 0.5 + z - inner, expected = std::pow(0.2, inner) * std::pow(0.5, outer);
         for (const auto* ends : {&truth, &exact, &planes}) EXPECT_NEAR((*ends)[16 * 33 + 16].transmittance[0], expected, 2e-3) << z;
+        if (getenv("RATES")) printf("inside %f %f\n", compareRays(exact, truth).correct, compareRays(planes, truth).correct);
         EXPECT_GE(compareRays(exact, truth).correct, 0.98) << z;
         EXPECT_GE(compareRays(planes, truth).correct, 0.96) << z;
     }
