@@ -1,5 +1,6 @@
 #include <vitrail/light/glass.h>
 
+#include <vitrail/light/glass_voxels.h>
 #include <vitrail/methods.h>
 
 #include "light/march.h"
@@ -28,26 +29,28 @@ GlassMethod glassByName(std::string_view name, std::span<const std::string> opti
     return method;
 }
 
-Image shade(Queue& queue, const Scene& scene, const Camera& camera, const Glass& effect) {
+namespace {
+
+void checkReflections(const Glass& effect) {
     if (effect.reflections > 8)
         throw Error(ErrorCode::badOption,
                     {"glass: reflections=" + std::to_string(effect.reflections) + " is out of range", "", "", "reflections from 0 to 8"});
-    return detail::marchPicture(
-        queue, scene, camera, effect.method, effect.samples, "glass",
-        [&](detail::Call& call, const detail::MarchVolume& volume, std::uint64_t samples, const Buffer<float>& seen, const Buffer<std::uint32_t>& status) {
-            const vitrail_LightDesc light = detail::describeLight(scene, effect.ground, scene.mesh.bounds());
-            const std::vector<Float4>& texels = scene.environment.map.pixels;
-            Buffer<float> map;
-            if (!texels.empty()) {
-                map = queue.workspace().take<float>(4 * texels.size(), "environment map");
-                call.upload(map, &texels[0].x, 4 * texels.size());
-            }
-            detail::launchMarch(call, "glass", "glass_shade", volume, samples, light, map, static_cast<std::int32_t>(effect.reflections), status,
-                                seen);
-        });
 }
 
-GlassRays glassRays(Queue& queue, const Scene& scene, const Camera& camera, const GlassMethod& method) {
+detail::MarchLaunch shading(Queue& queue, const Scene& scene, const Glass& effect) {
+    return [&](detail::Call& call, const detail::MarchVolume& volume, std::uint64_t samples, const Buffer<float>& seen, const Buffer<std::uint32_t>& status) {
+        const vitrail_LightDesc light = detail::describeLight(scene, effect.ground, scene.mesh.bounds());
+        const std::vector<Float4>& texels = scene.environment.map.pixels;
+        Buffer<float> map;
+        if (!texels.empty()) {
+            map = queue.workspace().take<float>(4 * texels.size(), "environment map");
+            call.upload(map, &texels[0].x, 4 * texels.size());
+        }
+        detail::launchMarch(call, "glass", "glass_shade", volume, samples, light, map, static_cast<std::int32_t>(effect.reflections), status, seen);
+    };
+}
+
+GlassRays rays(Queue& queue, const Scene& scene, const Camera& camera, const GlassMethod& method, detail::MarchVolume* kept) {
     detail::checkGlass(scene, method);
     GlassRays out;
     std::shared_ptr<detail::Record> record;
@@ -55,7 +58,10 @@ GlassRays glassRays(Queue& queue, const Scene& scene, const Camera& camera, cons
         detail::Call call(queue, "tracing glass of " + std::to_string(scene.mesh.triangleCount()) + " triangles");
         const std::uint64_t pixels = static_cast<std::uint64_t>(camera.width) * camera.height;
         Buffer<vitrail_RayEnd> ends = queue.workspace().take<vitrail_RayEnd>(pixels, "ends of rays");
-        const detail::MarchVolume volume = detail::marchVolume(call, scene, camera, method);
+        std::optional<detail::MarchVolume> own;
+        if (!kept) own = detail::marchVoxels(call, scene, method);
+        detail::MarchVolume& volume = kept ? *kept : *own;
+        detail::lookAt(call, scene, camera, volume);
         detail::launchMarch(call, "glass", "glass_ends", volume, pixels, ends);
         out.ends = ends.read(queue);
         out.report.effect = "rays";
@@ -72,6 +78,27 @@ GlassRays glassRays(Queue& queue, const Scene& scene, const Camera& camera, cons
         out.report.boundedRays += end.fate == VITRAIL_RAY_BOUNDED;
     }
     return out;
+}
+
+}  // namespace
+
+Image shade(Queue& queue, const Scene& scene, const Camera& camera, const Glass& effect) {
+    checkReflections(effect);
+    return detail::marchPicture(queue, scene, camera, effect.method, effect.samples, "glass", shading(queue, scene, effect));
+}
+
+Image shade(Queue& queue, const GlassVoxels& voxels, const Camera& camera, const Glass& effect) {
+    checkReflections(effect);
+    return detail::marchPicture(queue, voxels.scene(), camera, voxels.method(), detail::volumeOf(voxels), effect.samples, "glass",
+                                shading(queue, voxels.scene(), effect));
+}
+
+GlassRays glassRays(Queue& queue, const Scene& scene, const Camera& camera, const GlassMethod& method) {
+    return rays(queue, scene, camera, method, nullptr);
+}
+
+GlassRays glassRays(Queue& queue, const GlassVoxels& voxels, const Camera& camera) {
+    return rays(queue, voxels.scene(), camera, voxels.method(), &detail::volumeOf(voxels));
 }
 
 }  // namespace v0

@@ -126,36 +126,56 @@ vitrail_Media mediaAt(const Scene& scene, const Float3& eye) {
     return media;
 }
 
-MarchVolume marchVolume(Call& call, const Scene& scene, const Camera& camera, const GlassMethod& method) {
+void uploadMaterials(Call& call, const Scene& scene, MarchVolume& volume) {
+    Workspace& workspace = call.queue().workspace();
+    std::vector<std::uint32_t> packed;
+    const std::vector<vitrail_MaterialDesc> table = describeMaterials(scene, packed);
+    if (!packed.empty()) {
+        volume.texels = workspace.take<std::uint32_t>(packed.size(), "textures");
+        call.upload(volume.texels, packed.data(), packed.size());
+    }
+    volume.materials = workspace.take<vitrail_MaterialDesc>(table.size(), "materials");
+    call.upload(volume.materials, table.data(), table.size());
+}
+
+void lookAt(Call& call, const Scene& scene, const Camera& camera, MarchVolume& volume) {
+    volume.gbuffer = rasterize(call.queue(), volume.mesh, camera);
+    volume.around = mediaAt(scene, camera.eye);
+}
+
+MarchVolume marchVoxels(Call& call, const Scene& scene, const GlassMethod& method) {
     Queue& queue = call.queue();
     const Grid grid = Grid::fit(scene.mesh.bounds(), static_cast<std::uint32_t>(resolutionOf(method)));
     DeviceMesh mesh(queue, scene.mesh.view());
-    GBuffer gbuffer = rasterize(queue, mesh, camera);
-    std::vector<std::uint32_t> packed;
-    const std::vector<vitrail_MaterialDesc> table = describeMaterials(scene, packed);
-    Buffer<std::uint32_t> texels;
-    if (!packed.empty()) {
-        texels = queue.workspace().take<std::uint32_t>(packed.size(), "textures");
-        call.upload(texels, packed.data(), packed.size());
-    }
-    Buffer<vitrail_MaterialDesc> materials = queue.workspace().take<vitrail_MaterialDesc>(table.size(), "materials");
-    call.upload(materials, table.data(), table.size());
     const Uint3 size = grid.size();
     const auto bound = static_cast<std::int32_t>(4 * (size.x + size.y + size.z));
+    const auto made = [&](Voxels voxels, Buffer<vitrail_SurfaceVoxel> surface, Buffer<vitrail_SurfaceVoxel> planes, std::optional<Voxels> solid,
+                          Buffer<std::uint32_t> triangles, Buffer<std::uint32_t> ends) {
+        MarchVolume volume{grid,  std::move(mesh), std::move(voxels), std::move(surface), std::move(planes), std::move(solid), std::move(triangles),
+                           std::move(ends), {}, {}, {}, bound, {}};
+        uploadMaterials(call, scene, volume);
+        return volume;
+    };
     if (std::holds_alternative<Exact>(method)) {
         VoxelLists lists = voxelizeLists(queue, mesh, grid);
-        return {grid, std::move(mesh), std::move(lists.voxels), {}, {}, {}, std::move(lists.triangles), std::move(lists.ends), std::move(gbuffer),
-                std::move(materials), std::move(texels), bound, mediaAt(scene, camera.eye)};
+        return made(std::move(lists.voxels), {}, {}, {}, std::move(lists.triangles), std::move(lists.ends));
     }
     SurfaceVoxels surface = voxelizeSurface(queue, mesh, grid);
     // Bodies in one another are inside where even-odd has them outside.
     Voxels solid = several(scene.mesh) ? voxelize(queue, mesh, grid, SolidWinding{}) : voxelize(queue, mesh, grid, Solid{});
-    return {grid, std::move(mesh), std::move(surface.voxels), std::move(surface.surface), std::move(surface.planes), std::move(solid), {}, {},
-            std::move(gbuffer), std::move(materials), std::move(texels), bound, mediaAt(scene, camera.eye)};
+    return made(std::move(surface.voxels), std::move(surface.surface), std::move(surface.planes), std::move(solid), {}, {});
 }
 
-Image marchPicture(Queue& queue, const Scene& scene, const Camera& camera, const GlassMethod& method, std::uint32_t perSide, const char* name,
-                   const MarchLaunch& launch) {
+MarchVolume marchVolume(Call& call, const Scene& scene, const Camera& camera, const GlassMethod& method) {
+    MarchVolume volume = marchVoxels(call, scene, method);
+    lookAt(call, scene, camera, volume);
+    return volume;
+}
+
+namespace {
+
+Image picture(Queue& queue, const Scene& scene, const Camera& camera, const GlassMethod& method, MarchVolume* kept, std::uint32_t perSide,
+              const char* name, const MarchLaunch& launch) {
     checkGlass(scene, method);
     checkSamples(name, perSide);
     Camera sampled = camera;
@@ -166,7 +186,10 @@ Image marchPicture(Queue& queue, const Scene& scene, const Camera& camera, const
     Workspace& workspace = queue.workspace();
     const std::uint64_t samples = static_cast<std::uint64_t>(sampled.width) * sampled.height;
     Buffer<float> seen = workspace.take<float>(4 * samples, "samples of a picture");
-    const MarchVolume volume = marchVolume(call, scene, sampled, method);
+    std::optional<MarchVolume> own;
+    if (!kept) own = marchVoxels(call, scene, method);
+    MarchVolume& volume = kept ? *kept : *own;
+    lookAt(call, scene, sampled, volume);
     Buffer<std::uint32_t> status = workspace.take<std::uint32_t>(kLightStatusWords, "counts");
     call.fill(status, 0);
     launch(call, volume, samples, seen, status);
@@ -178,6 +201,18 @@ Image marchPicture(Queue& queue, const Scene& scene, const Camera& camera, const
     image->counted.triangles = volume.mesh.triangleCount();
     image->counted.occupied = volume.voxels.occupied();
     return Image(std::move(image));
+}
+
+}  // namespace
+
+Image marchPicture(Queue& queue, const Scene& scene, const Camera& camera, const GlassMethod& method, std::uint32_t perSide, const char* name,
+                   const MarchLaunch& launch) {
+    return picture(queue, scene, camera, method, nullptr, perSide, name, launch);
+}
+
+Image marchPicture(Queue& queue, const Scene& scene, const Camera& camera, const GlassMethod& method, MarchVolume& volume, std::uint32_t perSide,
+                   const char* name, const MarchLaunch& launch) {
+    return picture(queue, scene, camera, method, &volume, perSide, name, launch);
 }
 
 }  // namespace detail

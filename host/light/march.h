@@ -14,6 +14,8 @@
 
 namespace vitrail {
 inline namespace v0 {
+class GlassVoxels;
+
 namespace detail {
 
 /// What rays go through: the scene's voxels, and what its camera sees first.
@@ -29,6 +31,8 @@ struct MarchVolume {
     Buffer<std::uint32_t> texels;  ///< of all textures, RGBA of 8 bits; colours as their square roots
     std::int32_t bound;  ///< a walk crosses at most this many cells on four straight ways through the grid; a march past it is ended and counted
     vitrail_Media around;  ///< the camera
+    Buffer<std::uint16_t> edits;  ///< kernels/lib/edits.cl; empty: none
+    vitrail_uint4 editLow{}, editSize{};
 };
 
 std::string_view nameOf(const GlassMethod& method);
@@ -38,6 +42,15 @@ void checkGlass(const Scene& scene, const GlassMethod& method);
 
 /// What `eye` is inside of, by the surfaces along a line from it.
 vitrail_Media mediaAt(const Scene& scene, const Float3& eye);
+
+/// Where they differ from what `volume` has on the device.
+void uploadMaterials(Call& call, const Scene& scene, MarchVolume& volume);
+
+/// What a camera sees first.
+void lookAt(Call& call, const Scene& scene, const Camera& camera, MarchVolume& volume);
+
+/// Voxelizes; no camera yet.
+MarchVolume marchVoxels(Call& call, const Scene& scene, const GlassMethod& method);
 
 MarchVolume marchVolume(Call& call, const Scene& scene, const Camera& camera, const GlassMethod& method);
 
@@ -49,14 +62,15 @@ void launchMarch(Call& call, const char* file, const char* kernel, const MarchVo
     const Voxels& voxels = volume.voxels;
     const Buffer<std::uint32_t> none;
     const Buffer<std::uint32_t>&solidBits = volume.solid ? volume.solid->bits() : none, &solidBricks = volume.solid ? volume.solid->bricks() : none;
-    const Program program{std::string("light/") + file, volume.triangles ? "-DVITRAIL_TRIANGLES" : ""};
+    const Program program{std::string("light/") + file, std::string(volume.triangles ? "-DVITRAIL_TRIANGLES" : "") + (volume.edits ? " -DVITRAIL_EDITS" : "")};
     for (std::uint64_t first = 0; first < samples; first += kBand) {
         call.step("rays", 0.5 + 0.5 * static_cast<double>(first) / static_cast<double>(samples));
         const std::uint64_t count = std::min(kBand, samples - first);
         call.launchRange(program, kernel, count, volume.grid.desc(), volume.gbuffer.camera, volume.mesh.positions(), volume.mesh.indices(),
                          volume.mesh.normals(), volume.mesh.materials(), volume.gbuffer.triangle, voxels.bits(), voxels.bricks(), voxels.rank(),
                          voxels.mip(), volume.surface, volume.planes, solidBits, solidBricks, voxels.materialBuffer(), volume.materials,
-                         voxels.countBuffer(), volume.triangles, volume.ends, volume.bound, volume.around, volume.mesh.texcoords(), volume.texels,
+                         voxels.countBuffer(), volume.triangles, volume.ends, volume.bound, volume.around, volume.mesh.texcoords(), volume.texels, volume.edits,
+                         volume.editLow, volume.editSize,
                          args..., first);
     }
 }
@@ -65,9 +79,16 @@ void launchMarch(Call& call, const char* file, const char* kernel, const MarchVo
 using MarchLaunch =
     std::function<void(Call& call, const MarchVolume& volume, std::uint64_t samples, const Buffer<float>& seen, const Buffer<std::uint32_t>& status)>;
 
+/// A picture of perSide x perSide samples a pixel of voxels that are there; `volume` gets the camera.
+Image marchPicture(Queue& queue, const Scene& scene, const Camera& camera, const GlassMethod& method, MarchVolume& volume, std::uint32_t perSide,
+                   const char* name, const MarchLaunch& launch);
+
 /// A picture of perSide x perSide samples a pixel.
 Image marchPicture(Queue& queue, const Scene& scene, const Camera& camera, const GlassMethod& method, std::uint32_t perSide, const char* name,
                    const MarchLaunch& launch);
+
+/// Those that are kept.
+MarchVolume& volumeOf(const GlassVoxels& voxels);
 
 }  // namespace detail
 }  // namespace v0

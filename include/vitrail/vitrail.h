@@ -14,6 +14,7 @@
 #include <vitrail/grid/grid.h>
 #include <vitrail/light/boxes.h>
 #include <vitrail/light/glass.h>
+#include <vitrail/light/glass_voxels.h>
 #include <vitrail/light/shadow.h>
 #include <vitrail/methods.h>
 #include <vitrail/scene/mesh.h>

@@ -35,6 +35,8 @@ typedef struct {
     vitrail_Media around;  // the camera
     global const float2* texcoords;
     global const uchar4* texels;
+    global const ushort* edits;  // lib/edits.cl; null: none
+    uint4 editLow, editSize;     // their box of cells
 } Volume;
 
 #define NO_TRIANGLE 0xffffffffu
@@ -45,6 +47,8 @@ typedef struct {
     float3 position, normal, flat;  // voxel coordinates; unit normals, outward: for shading, and of the plane
     uint material, triangle;
     bool inside;  // whether the ray came from within
+    bool edited;  // no surface, but a change of the cells' materials, to `over`
+    uint over;
     bool placed;  // whether `texcoord` is known
     float2 texcoord;
     // A surface of another material in the same place, or VITRAIL_AIR, passed after the first (vitrail_first).
@@ -99,10 +103,10 @@ static inline float3 to_world(const vitrail_GridDesc* grid, float3 p) { return p
         global const vitrail_SurfaceVoxel *planes, global const uint *solid, global const uint2 *solidBricks,                               \
         global const uint *voxelMaterial, global const vitrail_MaterialDesc *materials, global const uint *counts, global const uint *list, \
         global const uint *end, int bound, const vitrail_Media around, global const float2 *texcoords,            \
-        global const uchar4 *texels
+        global const uchar4 *texels, global const ushort *edits, const uint4 editLow, const uint4 editSize
 #define MARCH_VOLUME                                                                                                                         \
     {&grid, words, bricks, rank, mip, surface, planes, solid, solidBricks, voxelMaterial, materials, bound, counts, list, end, positions, indices, \
-     normals, triangleMaterial, around, texcoords, texels}
+     normals, triangleMaterial, around, texcoords, texels, edits, editLow, editSize}
 
 // The shading normal there, or the flat one.
 static inline float3 march_shading(global const float* normals, const uint index[3], const float share[3], float3 flat) {

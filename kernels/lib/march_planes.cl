@@ -66,6 +66,7 @@ static inline bool march_next(const Volume* volume, float3 origin, float3 direct
     hit->triangle = hit->otherTriangle = NO_TRIANGLE;
     hit->otherMaterial = VITRAIL_AIR;
     hit->otherInside = hit->placed = false;
+    hit->edited = false;
     bool found = false, away = false;  // away: past a cell without surface
     float aside = 2.0f;                // how far outside its cell the candidate in `hit` was met; 2: there is none
     if (dda_start(&dda, volume->grid, origin, direction, fmax(tLeast - REACH, 0.0f))) {

@@ -127,6 +127,7 @@ static inline bool march_next(const Volume* volume, float3 origin, float3 direct
     march_place(volume, corner, share, hit);
     hit->triangle = nearest;
     hit->material = material;
+    hit->edited = false;
     hit->inside = dot(direction, hit->flat) > 0.0f;
     return true;
 }

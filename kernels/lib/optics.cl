@@ -1,6 +1,7 @@
 // lib/optics.cl: what happens to a ray at and between boundaries, and to light on its straight way through them.
 #ifndef VITRAIL_LIB_OPTICS
 #define VITRAIL_LIB_OPTICS
+#include "lib/edits.cl"
 #include "lib/fresnel.cl"
 #include "lib/march.cl"
 #include "lib/surface.cl"
@@ -105,6 +106,31 @@ static inline Look optics_look(const Volume* volume, const Crossing* hit) {
     return look;
 }
 
+// Beer-Lambert of a straight way between two distances in `medium`, where no cell was edited. Changes between cells neither bend nor reflect.
+static inline float3 optics_absorb_along(const Volume* volume, float3 p, float3 d, float from, float to, const vitrail_Media* media, uint medium) {
+    const float cell = volume->grid->extent.x;
+#ifdef VITRAIL_EDITS
+    if (media->depth == 0u)
+#endif
+        return medium == VITRAIL_AIR ? (float3)(1.0f) : optics_absorb(&volume->materials[medium], (to - from) * cell);
+#ifdef VITRAIL_EDITS
+    float3 through = (float3)(1.0f);
+    float3 o = p + d * from;
+    float left = to - from;
+    uint over = edit_at(volume, o);
+    Crossing change;
+    while (left > 0.0f) {
+        const bool more = edit_next(volume, o, d, media, over, left, &change);
+        const float length = more ? change.t : left;
+        through *= optics_absorb(&volume->materials[over != 0u ? over - 1u : medium], length * cell);
+        o += d * length;
+        left -= length;
+        if (more) over = change.over;
+    }
+    return through;
+#endif
+}
+
 // Transmittance from a point inside of `media` straight to the light: Beer-Lambert in each body, 1 - F at each crossing, 0 behind opaque voxels.
 static float3 march_transmittance_from(const Volume* volume, float3 p, float3 toLight, const vitrail_Media* media) {
     float3 through = (float3)(1.0f);
@@ -119,14 +145,14 @@ static float3 march_transmittance_from(const Volume* volume, float3 p, float3 to
         if (look.cover == 0.0f || volume->materials[hit.material].colour.w <= 0.5f) {
             if (look.cover == 1.0f) return (float3)(0.0f);
             through *= 1.0f - look.cover;
-            const uint medium = vitrail_medium(&march.media);
-            if (medium != VITRAIL_AIR) through *= optics_absorb(&volume->materials[medium], (hit.t - march.least) * volume->grid->extent.x);
+            through *= optics_absorb_along(volume, p, toLight, march.least, hit.t, &march.media, vitrail_medium(&march.media));
             march.least = hit.t;
             continue;
         }
         if (hit.otherMaterial != VITRAIL_AIR && volume->materials[hit.otherMaterial].colour.w <= 0.5f) return (float3)(0.0f);
+        const vitrail_Media media = march.media;
         const uint before = march_pass(volume, &hit, &march.media);
-        if (before != VITRAIL_AIR) through *= optics_absorb(&volume->materials[before], (hit.t - march.least) * volume->grid->extent.x);
+        through *= optics_absorb_along(volume, p, toLight, march.least, hit.t, &media, before);
         const float ratio = march_index(volume, before) / march_index(volume, vitrail_medium(&march.media));
         const bool thin = march_thin(volume, hit.material);
         // Both sides by the same number: the way is straight.

@@ -40,6 +40,7 @@ typedef struct {
     float3 weight, position, direction;
     March march;
     uint events;
+    uint over;  // what its cell was edited to (lib/edits.cl)
 } Path;
 
 static float3 glass_light(const Volume* volume, const vitrail_LightDesc* light, global const float4* map, const End* end, float width) {
@@ -82,12 +83,24 @@ static void glass_trace(const Volume* volume, Crossing hit, float way, float3 di
     path.march = march_begin(false, 0u, MARCH_LEAST);
     path.march.media = volume->around;
     path.events = 0u;
+    path.over = edit_at(volume, hit.position - direction * (way / volume->grid->extent.x));
     *fate = VITRAIL_RAY_LEFT;
     bool main = true;
     for (;;) {
         // On a surface: `hit`, after `way` through what lies before it.
         vitrail_Media media = path.march.media;
-        const uint before = march_pass(volume, &hit, &media), behind = vitrail_medium(&media);
+        uint before, behind, over = 0u;
+        if (hit.edited) {
+            before = vitrail_medium(&media);
+            behind = hit.over != 0u ? hit.over - 1u : before;
+            over = hit.over;
+        } else {
+            before = march_pass(volume, &hit, &media);
+            behind = vitrail_medium(&media);
+            if (media.depth > 0u) over = edit_at(volume, hit.position + hit.flat * (hit.inside ? 0.05f : -0.05f));
+            if (over != 0u) behind = over - 1u;
+        }
+        if (path.over != 0u && path.march.media.depth > 0u) before = path.over - 1u;
         if (before != VITRAIL_AIR) path.weight *= optics_absorb(&volume->materials[before], way);
         const bool opaque = volume->materials[hit.material].colour.w <= 0.5f, thin = march_thin(volume, hit.material),
                    other = hit.otherMaterial != VITRAIL_AIR && volume->materials[hit.otherMaterial].colour.w <= 0.5f;
@@ -99,6 +112,7 @@ static void glass_trace(const Volume* volume, Crossing hit, float way, float3 di
             look.transmission = 1.0f;
             look.roughness = 0.0f;
         }
+        if (over != 0u) look.colour = xyz(volume->materials[over - 1u].colour);
         if (other) look.colour = xyz(volume->materials[hit.otherMaterial].colour);
         // The share that ends here on something diffuse. Without room for another end all of it does, or nothing.
         float solid = opaque ? look.cover : look.cover * (1.0f - look.transmission);
@@ -126,6 +140,7 @@ static void glass_trace(const Volume* volume, Crossing hit, float way, float3 di
                 deeper = path.march.media.depth > 0u;  // past what is not there
             } else if (before == behind && !thin) {
                 path.march.media = media;
+                path.over = over;
             } else {
                 const float ratio = thin ? 1.0f / march_index(volume, hit.material) : march_index(volume, before) / march_index(volume, behind);
                 float3 n = optics_facing(path.direction, hit.normal, hit.flat);
@@ -166,6 +181,7 @@ static void glass_trace(const Volume* volume, Crossing hit, float way, float3 di
                     deeper = false;
                 } else if (optics_cross(&path.direction, n, hit.flat, ratio)) {
                     path.march.media = media;
+                    path.over = over;
                     if (!hit.inside) path.weight *= look.colour;
                     if (hit.otherMaterial != VITRAIL_AIR && !hit.otherInside) path.weight *= xyz(volume->materials[hit.otherMaterial].colour);
                 } else {
@@ -182,7 +198,13 @@ static void glass_trace(const Volume* volume, Crossing hit, float way, float3 di
                 deeper = false;
                 ended = false;
             }
-            if (march_next(volume, path.position, path.direction, &path.march, &hit)) break;
+            if (march_next(volume, path.position, path.direction, &path.march, &hit)) {
+#ifdef VITRAIL_EDITS
+                if (path.march.media.depth > 0u)
+                    edit_next(volume, path.position, path.direction, &path.march.media, path.over, hit.t, &hit);
+#endif
+                break;
+            }
             ends_add(ends, path.weight, path.position, path.direction, &path.march.media, false);
             if (main && path.march.steps >= volume->bound)
                 *fate = VITRAIL_RAY_BOUNDED;
@@ -207,7 +229,7 @@ static inline bool glass_first(const Volume* volume, const vitrail_CameraDesc* c
     hit->inside = dot(*d, hit->flat) > 0.0f;
     hit->otherMaterial = VITRAIL_AIR;
     hit->otherTriangle = NO_TRIANGLE;
-    hit->otherInside = false;
+    hit->otherInside = hit->edited = false;
     uint index[3];
     float share[3];
     float3 v[3];
