@@ -62,7 +62,7 @@ void launchMarch(Call& call, const char* file, const char* kernel, const MarchVo
     const Voxels& voxels = volume.voxels;
     const Buffer<std::uint32_t> none;
     const Buffer<std::uint32_t>&solidBits = volume.solid ? volume.solid->bits() : none, &solidBricks = volume.solid ? volume.solid->bricks() : none;
-    const Program program{std::string("light/") + file, std::string(volume.triangles ? "-DVITRAIL_TRIANGLES" : "") + (volume.edits ? " -DVITRAIL_EDITS" : "")};
+    const Program program{std::string("light/") + file, volume.triangles ? "-DVITRAIL_TRIANGLES" : ""};
     for (std::uint64_t first = 0; first < samples; first += kBand) {
         call.step("rays", 0.5 + 0.5 * static_cast<double>(first) / static_cast<double>(samples));
         const std::uint64_t count = std::min(kBand, samples - first);

@@ -1,5 +1,5 @@
 // lib/edits.cl: materials set in cells after voxelization (vitrail/light/glass_voxels.h): where along a ray they change. A cell holds its
-// material plus one, 0 where nothing was set. Programs for volumes with edits are compiled with VITRAIL_EDITS.
+// material plus one, 0 where nothing was set.
 #ifndef VITRAIL_LIB_EDITS
 #define VITRAIL_LIB_EDITS
 #include "lib/march.cl"
@@ -17,11 +17,7 @@ static inline uint edit_of(const Volume* volume, int x, int y, int z) {
 }
 
 static inline uint edit_at(const Volume* volume, float3 p) {
-#ifdef VITRAIL_EDITS
-    return edit_of(volume, (int)floor(p.x), (int)floor(p.y), (int)floor(p.z));
-#else
-    return 0u;
-#endif
+    return volume->edits ? edit_of(volume, (int)floor(p.x), (int)floor(p.y), (int)floor(p.z)) : 0u;
 }
 
 // The first change before `end` of a ray inside of `media` whose own cell holds `over`: a crossing between two cells, whose normal is that of

@@ -109,11 +109,8 @@ static inline Look optics_look(const Volume* volume, const Crossing* hit) {
 // Beer-Lambert of a straight way between two distances in `medium`, where no cell was edited. Changes between cells neither bend nor reflect.
 static inline float3 optics_absorb_along(const Volume* volume, float3 p, float3 d, float from, float to, const vitrail_Media* media, uint medium) {
     const float cell = volume->grid->extent.x;
-#ifdef VITRAIL_EDITS
-    if (media->depth == 0u)
-#endif
+    if (!volume->edits || media->depth == 0u)
         return medium == VITRAIL_AIR ? (float3)(1.0f) : optics_absorb(&volume->materials[medium], (to - from) * cell);
-#ifdef VITRAIL_EDITS
     float3 through = (float3)(1.0f);
     float3 o = p + d * from;
     float left = to - from;
@@ -128,7 +125,6 @@ static inline float3 optics_absorb_along(const Volume* volume, float3 p, float3 
         if (more) over = change.over;
     }
     return through;
-#endif
 }
 
 // Transmittance from a point inside of `media` straight to the light: Beer-Lambert in each body, 1 - F at each crossing, 0 behind opaque voxels.

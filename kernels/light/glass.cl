@@ -199,10 +199,8 @@ static void glass_trace(const Volume* volume, Crossing hit, float way, float3 di
                 ended = false;
             }
             if (march_next(volume, path.position, path.direction, &path.march, &hit)) {
-#ifdef VITRAIL_EDITS
-                if (path.march.media.depth > 0u)
+                if (volume->edits && path.march.media.depth > 0u)
                     edit_next(volume, path.position, path.direction, &path.march.media, path.over, hit.t, &hit);
-#endif
                 break;
             }
             ends_add(ends, path.weight, path.position, path.direction, &path.march.media, false);

@@ -57,14 +57,9 @@ TEST(GlassVoxels, HalfACubeEditedIsTwoBodiesThatTouch) {
         EXPECT_EQ(voxels.edit(queue(), kHalf, b), 64u * 128 * 128);
         const GlassRays rays = glassRays(queue(), voxels, camera);
         const RayErrors errors = compareRays(rays.ends, truth);
-        // Rate: rays through the region's edges. Half the measured share of wrong pixels more.
-        EXPECT_GE(errors.correct, 0.97) << rays.report.method;
-        EXPECT_LE(errors.transmittanceMean, 0.01) << rays.report.method;
-        if (getenv("RATES")) {
-            printf("%s half %f close %f trans %f lost %zu\n", rays.report.method.c_str(), errors.correct, errors.close, errors.transmittanceMean, (size_t)rays.report.lostRays);
-            for (int k = 0; k < 7; ++k) printf(" %zu", (size_t)errors.faults[k]);
-            puts("");
-        }
+        // Rate: all were right; rays that meet an edge may not be.
+        EXPECT_GE(errors.correct, 0.995) << rays.report.method;
+        EXPECT_LE(errors.transmittanceMean, 0.001) << rays.report.method;
     }
 }
 
@@ -92,10 +87,10 @@ TEST(GlassVoxels, ABrushIsABall) {
         const auto a = glassRays(queue(), brushed, camera).ends, b = glassRays(queue(), said, camera).ends;
         EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])), 0);
         const RayErrors errors = compareRays(a, truth);
-        if (getenv("RATES")) printf("brush %g: %f median %f trans %f %f\n", index, errors.correct, errors.medianDegrees, errors.transmittanceMean, errors.transmittanceWorst);
         // No change of index: only the length through the ball is that of its cells.
-        EXPECT_GE(errors.correct, index == 1.2f ? 0.99 : 0.6);
-        EXPECT_LE(errors.transmittanceMean, index == 1.2f ? 0.005 : 0.03);
+        // Else the normal is that of 5^3 cells: 0.868 measured.
+        EXPECT_GE(errors.correct, index == 1.2f ? 0.99 : 0.84);
+        EXPECT_LE(errors.transmittanceMean, index == 1.2f ? 0.002 : 0.02);
     }
 }
 
@@ -127,7 +122,7 @@ TEST(GlassVoxels, AreNotVoxelizedAgain) {
     const auto edited = glassRays(queue(), voxels, camera);
     const Counters after = queue().counters();
     EXPECT_NE(std::memcmp(edited.ends.data(), kept.data(), kept.size() * sizeof(kept[0])), 0);
-    // The G-buffer's two and the march's one.
+    // The G-buffer's kernels and the march's.
     EXPECT_LE(after.launches - before.launches, 6u);
     EXPECT_EQ(after.programBuilds, before.programBuilds);
 }

@@ -1,8 +1,8 @@
 // vitrail/light/glass.h: glass with many refractions, marched through voxels (Chang et al. 2013, section 5.2, with exact steps): the camera's
 // first hit comes from the triangles (vitrail/raster/gbuffer.h), every later crossing from the planes inside a voxel
-// (vitrail/voxelize/surface.h) or from the triangles listed there (vitrail/voxelize/lists.h). The march of planes knows whether it is inside or
-// outside, so that a surface met twice counts once. Snell's law and total internal reflection at each crossing, Beer-Lambert inside; opaque
-// materials end a ray; what leaves sees the environment and a ground that takes the transparent shadow.
+// (vitrail/voxelize/surface.h) or from the triangles listed there (vitrail/voxelize/lists.h). The march knows what it is inside of, so that
+// bodies may lie in one another, and with planes a surface met twice counts once. Snell's law and total internal reflection at each crossing,
+// Beer-Lambert in each body; opaque materials end a ray; what leaves sees the environment and a ground that takes the transparent shadow.
 #pragma once
 #include <span>
 #include <string>
@@ -56,7 +56,13 @@ struct Glass {
     std::uint32_t reflections = 0;
 };
 
-/// `scene.mesh` in world space with normals (vitrail::withSmoothNormals makes them); materials with transmission above 0.5 are glass. At most
+/// `scene.mesh` in world space with normals (vitrail::withSmoothNormals makes them); materials with transmission above 0.5 are glass: closed
+/// bodies, or thin walls where `thickness` is 0. Bodies of different glass may lie in one another, eight deep, around the camera too; what
+/// two of them share is made of the one entered last. Faces that touch leave no air between them with Exact (surfaces within 1e-3 cell along a
+/// ray; of bodies of the same material the air stays); a voxel of Planes has one material, the lowest, so that its bodies have to keep a voxel
+/// apart (or be edited: glass_voxels.h). Rough surfaces are facets drawn once a sample (Walter et al. 2007), the same in every run. Textures of
+/// colour, alpha, transmission and roughness hold where a camera sees a surface first, and with Exact everywhere; later surfaces of Planes
+/// have their mean, and no alpha. At most
 /// 16 crossings a ray and 4 grid diagonals of steps, counted in the report when met. Waits for sizes, not for the picture.
 /// Memory: estimate() of the voxels, and 24 bytes a sample. Same bits for any number of threads on one device. Throws Error (badInput,
 /// badOption, outOfMemory).
