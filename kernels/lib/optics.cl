@@ -48,7 +48,8 @@ static inline float optics_hash(uint a, uint b, uint c) {
     h = ((h >> ((h >> 28) + 4u)) ^ h) * 277803737u + c * 22695477u;
     h = h * 747796405u + 2891336453u;
     h = ((h >> ((h >> 28) + 4u)) ^ h) * 277803737u;
-    return (float)((h >> 22) ^ h >> 8 & 0xffffffu) * 5.9604645e-8f;
+    h ^= h >> 22;
+    return (float)(h >> 8) * 5.9604645e-8f;
 }
 
 // The normal of a facet of a rough surface (GGX, Walter et al. 2007, equations 35 and 36), alpha = roughness^2, turned against d.
@@ -160,7 +161,7 @@ static float3 march_transmittance_from(const Volume* volume, float3 p, float3 to
     return through;
 }
 
-static float3 march_transmittance(const Volume* volume, float3 p, float3 toLight, bool inside, uint material) {
+static inline float3 march_transmittance(const Volume* volume, float3 p, float3 toLight, bool inside, uint material) {
     const March march = march_begin(inside, material, 0.0f);
     return march_transmittance_from(volume, p, toLight, &march.media);
 }

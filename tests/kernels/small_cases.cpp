@@ -2,7 +2,7 @@
 // times slower than a device. Prints what ran; the numbers are tested elsewhere.
 #include <vitrail/core/error.h>
 #include <vitrail/light/boxes.h>
-#include <vitrail/light/glass.h>
+#include <vitrail/light/glass_voxels.h>
 #include <vitrail/light/shadow.h>
 #include <vitrail/vitrail.h>
 
@@ -89,7 +89,12 @@ int main() {
         scene.materials = {defaultGlass(scene.mesh.bounds())};
         const Camera camera = Camera::around(scene.mesh.bounds(), 30, 20, 4, 3);
         (void)shade(queue, scene, camera, Glass{.method = Planes{.resolution = 8}, .samples = 1}).picture();
-        (void)glassRays(queue, scene, camera, Exact{.resolution = 8});
+        {
+            GlassVoxels kept(queue, scene, Exact{.resolution = 8});
+            (void)kept.edit(queue, Brush{.centre = Float3(0.0f), .radius = 0.2f}, scene.materials[0]);
+            (void)glassRays(queue, kept, camera);
+            (void)shade(queue, kept, camera, Glass{.samples = 1, .reflections = 2}).picture();
+        }
         (void)shade(queue, scene, camera, Shadow{.method = Planes{.resolution = 8}, .samples = 1}).picture();
         const Grid grid = Grid::fit(scene.mesh.bounds(), 8);
         const Voxels voxels = voxelize(queue, scene.mesh, grid, Conservative{.channels = Channel::count | Channel::normal});
