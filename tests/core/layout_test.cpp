@@ -81,6 +81,10 @@ Entries hostLayout() {
     OFFSET(vitrail_SurfaceVoxel, slope0);
     OFFSET(vitrail_SurfaceVoxel, slope1);
 
+    SIZE(vitrail_Media);
+    OFFSET(vitrail_Media, depth);
+    OFFSET(vitrail_Media, material);
+
     SIZE(vitrail_RayEnd);
     OFFSET(vitrail_RayEnd, direction);
     OFFSET(vitrail_RayEnd, fate);
