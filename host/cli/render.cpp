@@ -27,7 +27,7 @@ struct Options {
                 environment, size = "768x768";
     std::vector<std::string> outputs;
     float yaw = 30, pitch = 20, indexOfRefraction = 0, exposure = 0, crease = 60;
-    std::uint32_t samples = 2, voxelResolution = 64, photons = Caustics{}.photons, texels = Caustics{}.texels;
+    std::uint32_t samples = 2, voxelResolution = 64, photons = Caustics{}.photons, texels = Caustics{}.texels, reflections = 0;
     bool noGround = false, lit = false, json = false;
     MethodOptions methodOptions;
     DeviceOptions device;
@@ -88,7 +88,10 @@ int runRender(const Options& options) {
         if (options.effect == "shadow")
             return shade(queue, scene, camera,
                          Shadow{.method = shadowMethod(options.method, options.methodOptions), .ground = ground, .samples = options.samples, .lit = options.lit});
-        Glass glass{.method = glassMethod(options.method, options.methodOptions), .ground = ground, .samples = options.samples};
+        Glass glass{.method = glassMethod(options.method, options.methodOptions),
+                    .ground = ground,
+                    .samples = options.samples,
+                    .reflections = options.reflections};
         if (options.effect != "caustics") return shade(queue, scene, camera, glass);
         const CausticMap map = caustics(queue, scene, {.method = glass.method, .ground = ground, .photons = options.photons, .texels = options.texels});
         glass.caustics = &map;
@@ -142,6 +145,9 @@ void addRender(CLI::App& app, Run& run) {
     verb->add_option("--ior", options->indexOfRefraction, "index of refraction of all materials, 1 to 3; else the scene's")->check(CLI::Range(1.0, 3.0));
     verb->add_option("--size", options->size, "pixels")->capture_default_str()->type_name("WxH");
     verb->add_option("--samples", options->samples, "along each side of a pixel")->check(CLI::Range(1, 4))->capture_default_str();
+    verb->add_option("--reflections", options->reflections, "of glass: how often a ray splits into what is refracted and what is reflected")
+        ->check(CLI::Range(0, 8))
+        ->capture_default_str();
     verb->add_option("--yaw", options->yaw, "degrees about +y; where the scene has no camera")->check(CLI::Range(-360.0, 360.0))->capture_default_str();
     verb->add_option("--pitch", options->pitch, "degrees upward; where the scene has no camera")->check(CLI::Range(-90.0, 90.0))->capture_default_str();
     verb->add_option("--exposure", options->exposure, "factor before the tone curve of .png; 0: from the picture")->check(CLI::Range(0.0, 1e6));

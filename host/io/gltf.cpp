@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include <vitrail/core/error.h>
@@ -28,6 +29,12 @@ constexpr std::size_t kMostCounted = 0xffffffffu;
 /// A primitive where a node places it.
 struct Placed {
     std::size_t node, mesh, primitive;
+};
+
+/// Images that a material names, or -1.
+struct SurfaceTextures {
+    int transmission = -1, roughness = -1;
+    float metallic = 0;
 };
 
 class GltfReader : private GltfDocument {
@@ -276,6 +283,8 @@ private:
         baseTextures_.assign(scene_.materials.size(), -1);
         texcoordSets_.assign(scene_.materials.size(), 0);
         for (std::size_t i = 0; i < model_.materials.size(); ++i) readBaseTexture(i);
+        surfaceTextures_.assign(scene_.materials.size(), {});
+        for (std::size_t i = 0; i < model_.materials.size(); ++i) readSurfaceTextures(i);
     }
 
     Material material(std::size_t index) {
@@ -309,14 +318,8 @@ private:
         readVolume(extensions, called, m);
         readEmission(from, called, m);
 
-        std::string left;
-        const auto leave = [&](bool there, const char* what) {
-            if (there) left += (left.empty() ? "" : ", ") + std::string(what);
-        };
-        leave(hasMember(extensions, "KHR_materials_transmission", "transmissionTexture"), "transmission");
-        leave(hasMember(extensions, "KHR_materials_volume", "thicknessTexture"), "thickness");
-        leave(pbr.metallicRoughnessTexture.index >= 0, "roughness");
-        if (!left.empty()) warn("material " + called + ": its textures of " + left + " are left out, the plain factors hold");
+        // Metal lets nothing through; a texture of it is read with the others.
+        if (pbr.metallicRoughnessTexture.index < 0) m.transmission *= 1.0f - inRange(pbr.metallicFactor, 0, 1, called, "metallicFactor");
         return m;
     }
 
@@ -384,6 +387,51 @@ private:
         pair("scale", m.textureScale);
     }
 
+    int imageOf(const tinygltf::Value* texture) const {
+        const tinygltf::Value* index = texture && texture->Has("index") ? &texture->Get("index") : nullptr;
+        return index && index->IsInt() ? imageOf(index->GetNumberAsInt()) : -1;
+    }
+
+    int imageOf(int texture) const {
+        if (texture < 0 || static_cast<std::size_t>(texture) >= model_.textures.size()) return -1;
+        const int image = model_.textures[static_cast<std::size_t>(texture)].source;
+        return image >= 0 && static_cast<std::size_t>(image) < images().size() ? image : -1;
+    }
+
+    // Those of transmission, roughness and metal, of materials that let light through.
+    void readSurfaceTextures(std::size_t index) {
+        const tinygltf::Material& from = model_.materials[index];
+        if (!(scene_.materials[index].transmission > 0)) return;
+        constexpr const char* kTransmission = "KHR_materials_transmission";
+        SurfaceTextures& into = surfaceTextures_[index];
+        if (hasMember(from.extensions, kTransmission, "transmissionTexture"))
+            into.transmission = imageOf(&from.extensions.at(kTransmission).Get("transmissionTexture"));
+        into.roughness = imageOf(from.pbrMetallicRoughness.metallicRoughnessTexture.index);
+        into.metallic = static_cast<float>(std::clamp(from.pbrMetallicRoughness.metallicFactor, 0.0, 1.0));
+    }
+
+    // One picture of both, in the size of the larger: transmission times what is no metal in red, roughness in green.
+    Picture surfacePicture(const SurfaceTextures& from) {
+        const Picture white(1, 1, Float4(1.0f));
+        Picture transmission = white, roughness = white;
+        if (from.transmission >= 0) transmission = picture(static_cast<std::size_t>(from.transmission));
+        if (from.roughness >= 0) roughness = picture(static_cast<std::size_t>(from.roughness));
+        Picture both(std::max(transmission.width, roughness.width), std::max(transmission.height, roughness.height));
+        const auto at = [&](const Picture& one, std::uint32_t x, std::uint32_t y) {
+            return one.at(static_cast<std::uint32_t>(std::uint64_t(x) * one.width / both.width), static_cast<std::uint32_t>(std::uint64_t(y) * one.height / both.height));
+        };
+        for (std::uint32_t y = 0; y < both.height; ++y)
+            for (std::uint32_t x = 0; x < both.width; ++x) {
+                const Float4 rough = at(roughness, x, y);
+                const float metal = from.roughness >= 0 ? stored(rough.z) * from.metallic : 0.0f;
+                both.at(x, y) = Float4(stored(at(transmission, x, y).x) * (1.0f - metal), from.roughness >= 0 ? stored(rough.y) : 1.0f, 0.0f, 1.0f);
+            }
+        return both;
+    }
+
+    // Numbers of these textures are linear as they are stored; a picture of 8 bits was read as sRGB.
+    static float stored(float linear) { return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f; }
+
     // Only pictures of materials that a triangle has; each once. A missing or broken one is a warning.
     void readTextures() {
         std::vector<char> used(scene_.materials.size(), 0);
@@ -403,6 +451,21 @@ private:
                 }
             }
             scene_.materials[i].baseColourTexture = entry->second;
+        }
+        std::map<std::tuple<int, int, float>, int> surfaces;
+        for (std::size_t i = 0; i < surfaceTextures_.size(); ++i) {
+            const SurfaceTextures& from = surfaceTextures_[i];
+            if (!used[i] || (from.transmission < 0 && from.roughness < 0)) continue;
+            const auto [entry, isNew] = surfaces.emplace(std::tuple(from.transmission, from.roughness, from.metallic), -1);
+            if (isNew) {
+                try {
+                    scene_.textures.push_back(surfacePicture(from));
+                    entry->second = static_cast<int>(scene_.textures.size()) - 1;
+                } catch (const Error& error) {
+                    warn("a picture of transmission or roughness is missing or broken, the plain factors hold (" + error.text().what + ")");
+                }
+            }
+            scene_.materials[i].surfaceTexture = entry->second;
         }
     }
 
@@ -665,6 +728,7 @@ private:
     GltfRig rig_;
     std::optional<std::size_t> cameraNode_;
     bool lightRead_ = false;
+    std::vector<SurfaceTextures> surfaceTextures_;  // by material
     std::vector<int> baseTextures_, texcoordSets_;  // by material: image or -1, and the set that places it
     std::optional<std::uint32_t> plain_;
     bool anyNormals_ = false, anyTexcoords_ = false, anyColours_ = false;

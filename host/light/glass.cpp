@@ -1,6 +1,7 @@
 #include <vitrail/light/caustics.h>
 #include <vitrail/light/glass.h>
 
+#include <vitrail/light/glass_voxels.h>
 #include <vitrail/methods.h>
 
 #include "light/ends.h"
@@ -44,29 +45,39 @@ GlassMethod glassByName(std::string_view name, std::span<const std::string> opti
     return method;
 }
 
-Image shade(Queue& queue, const Scene& scene, const Camera& camera, const Glass& effect) {
-    return detail::marchPicture(
-        queue, scene, camera, effect.method, effect.samples, "glass",
-        [&](detail::Call& call, const detail::MarchVolume& volume, std::uint64_t samples, const Buffer<float>& seen, const Buffer<std::uint32_t>& status) {
-            const vitrail_LightDesc light = detail::describeLight(scene, effect.ground, scene.mesh.bounds());
-            const Buffer<float> map = detail::uploadEnvironment(call, scene);
-            const Buffer<float> none;
-            const CausticMap* caustic = effect.caustics;
-            const Buffer<float>& irradiance = caustic != nullptr ? caustic->irradiance : none;
-            const vitrail_float4 place = caustic != nullptr ? vitrail_float4{caustic->low.x, caustic->low.y, caustic->edge, static_cast<float>(caustic->texels)}
-                                                            : vitrail_float4{};
-            if (!detail::tracesEnds(effect.method)) {
-                detail::launchMarch(call, "glass", "glass_shade", volume, samples, light, map, irradiance, place, status, seen);
-                return;
-            }
-            Buffer<vitrail_RayEnd> rays = queue.workspace().take<vitrail_RayEnd>(samples, "ends of rays");
-            Buffer<float> from = queue.workspace().take<float>(4 * samples, "where rays end");
-            detail::traceEnds(call, {scene, volume.mesh, volume.materials, volume.gbuffer.camera, &volume.gbuffer}, effect.method, rays, from);
-            detail::launchMarch(call, "ends", "ends_shade", volume, samples, light, map, irradiance, place, status, rays, from, seen);
-        });
+namespace {
+
+void checkReflections(const Glass& effect, const GlassMethod& method) {
+    if (effect.reflections > 8)
+        throw Error(ErrorCode::badOption,
+                    {"glass: reflections=" + std::to_string(effect.reflections) + " is out of range", "", "", "reflections from 0 to 8"});
+    if (effect.reflections != 0 && detail::tracesEnds(method))
+        throw Error(ErrorCode::badOption, {"glass: " + std::string(detail::nameOf(method)) + " has no reflections at later surfaces", "", "",
+                                           "reflections 0, or planes, exact or plane"});
 }
 
-GlassRays glassRays(Queue& queue, const Scene& scene, const Camera& camera, const GlassMethod& method) {
+detail::MarchLaunch shading(Queue& queue, const Scene& scene, const Glass& effect, const GlassMethod& method) {
+    return [&](detail::Call& call, const detail::MarchVolume& volume, std::uint64_t samples, const Buffer<float>& seen, const Buffer<std::uint32_t>& status) {
+        const vitrail_LightDesc light = detail::describeLight(scene, effect.ground, scene.mesh.bounds());
+        const Buffer<float> map = detail::uploadEnvironment(call, scene);
+        const Buffer<float> none;
+        const CausticMap* caustic = effect.caustics;
+        const Buffer<float>& irradiance = caustic != nullptr ? caustic->irradiance : none;
+        const vitrail_float4 place = caustic != nullptr ? vitrail_float4{caustic->low.x, caustic->low.y, caustic->edge, static_cast<float>(caustic->texels)}
+                                                        : vitrail_float4{};
+        if (!detail::tracesEnds(method)) {
+            detail::launchMarch(call, "glass", "glass_shade", volume, samples, light, map, irradiance, place,
+                                static_cast<std::int32_t>(effect.reflections), status, seen);
+            return;
+        }
+        Buffer<vitrail_RayEnd> rays = queue.workspace().take<vitrail_RayEnd>(samples, "ends of rays");
+        Buffer<float> from = queue.workspace().take<float>(4 * samples, "where rays end");
+        detail::traceEnds(call, {scene, volume.mesh, volume.materials, volume.gbuffer.camera, &volume.gbuffer}, method, rays, from);
+        detail::launchMarch(call, "ends", "ends_shade", volume, samples, light, map, irradiance, place, status, rays, from, seen);
+    };
+}
+
+GlassRays rays(Queue& queue, const Scene& scene, const Camera& camera, const GlassMethod& method, detail::MarchVolume* kept) {
     detail::checkGlass(scene, method);
     GlassRays out;
     std::shared_ptr<detail::Record> record, voxelizing;
@@ -82,11 +93,14 @@ GlassRays glassRays(Queue& queue, const Scene& scene, const Camera& camera, cons
             out.report.grid = voxels.grid;
             out.report.occupied = voxels.occupied;
         } else {
-            const detail::MarchVolume volume = detail::marchVolume(call, scene, camera, method);
+            std::optional<detail::MarchVolume> own;
+            if (!kept) own = detail::marchVoxels(call, scene, method);
+            detail::MarchVolume& volume = kept ? *kept : *own;
+            detail::lookAt(call, scene, camera, volume);
             detail::launchMarch(call, "glass", "glass_ends", volume, pixels, ends);
             out.report.grid = volume.grid.size();
             out.report.occupied = volume.voxels.occupied();
-            voxelizing = volume.voxelizing;
+            if (own) voxelizing = volume.voxelizing;
         }
         out.ends = ends.read(queue);
         out.report.effect = "rays";
@@ -102,6 +116,27 @@ GlassRays glassRays(Queue& queue, const Scene& scene, const Camera& camera, cons
         out.report.boundedRays += end.fate == VITRAIL_RAY_BOUNDED;
     }
     return out;
+}
+
+}  // namespace
+
+Image shade(Queue& queue, const Scene& scene, const Camera& camera, const Glass& effect) {
+    checkReflections(effect, effect.method);
+    return detail::marchPicture(queue, scene, camera, effect.method, effect.samples, "glass", shading(queue, scene, effect, effect.method));
+}
+
+Image shade(Queue& queue, const GlassVoxels& voxels, const Camera& camera, const Glass& effect) {
+    checkReflections(effect, voxels.method());
+    return detail::marchPicture(queue, voxels.scene(), camera, voxels.method(), detail::volumeOf(voxels), effect.samples, "glass",
+                                shading(queue, voxels.scene(), effect, voxels.method()));
+}
+
+GlassRays glassRays(Queue& queue, const Scene& scene, const Camera& camera, const GlassMethod& method) {
+    return rays(queue, scene, camera, method, nullptr);
+}
+
+GlassRays glassRays(Queue& queue, const GlassVoxels& voxels, const Camera& camera) {
+    return rays(queue, voxels.scene(), camera, voxels.method(), &detail::volumeOf(voxels));
 }
 
 }  // namespace v0

@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 
+#include <vitrail/layout/ray_end.h>
 #include <vitrail/layout/shading.h>
 #include <vitrail/layout/surface_voxel.h>
 #include <vitrail/light/glass.h>
@@ -13,6 +14,8 @@
 
 namespace vitrail {
 inline namespace v0 {
+class GlassVoxels;
+
 namespace detail {
 
 /// What rays go through: the scene's voxels, and what its camera sees first.
@@ -25,8 +28,12 @@ struct MarchVolume {
     Buffer<std::uint32_t> triangles, ends;         // of Exact
     GBuffer gbuffer;
     Buffer<vitrail_MaterialDesc> materials;
+    Buffer<std::uint32_t> texels;        ///< of all textures, RGBA of 8 bits; colours as their square roots
     std::shared_ptr<Record> voxelizing;  ///< what was launched for voxels, surface and solid
     std::int32_t bound;  ///< a walk crosses at most this many cells on four straight ways through the grid; a march past it is ended and counted
+    vitrail_Media around{};  ///< the camera
+    Buffer<std::uint16_t> edits;  ///< kernels/lib/edits.cl; empty: none
+    vitrail_uint4 editLow{}, editSize{};
 };
 
 std::string_view nameOf(const GlassMethod& method);
@@ -36,9 +43,18 @@ void checkMaterials(const Scene& scene);
 /// The same, and Error (badOption), before anything is made.
 void checkGlass(const Scene& scene, const GlassMethod& method);
 
-Buffer<vitrail_MaterialDesc> uploadMaterials(Call& call, const Scene& scene);
+/// What `eye` is inside of, by the surfaces along a line from it.
+vitrail_Media mediaAt(const Scene& scene, const Float3& eye);
 
-/// What `method` marches through; what Planes does at the same resolution where it does not march.
+/// `texels` gets those of all textures; null: nobody reads them.
+Buffer<vitrail_MaterialDesc> uploadMaterials(Call& call, const Scene& scene, Buffer<std::uint32_t>* texels = nullptr);
+
+/// What a camera sees first.
+void lookAt(Call& call, const Scene& scene, const Camera& camera, MarchVolume& volume);
+
+/// What `method` marches through; what Planes does at the same resolution where it does not march. No camera yet.
+MarchVolume marchVoxels(Call& call, const Scene& scene, const GlassMethod& method);
+/// With a camera.
 MarchVolume marchVolume(Call& call, const Scene& scene, const Camera& camera, const GlassMethod& method);
 
 /// `kernel` of light/`file` for every sample, in bands, so that the callback is asked while rays run; `args` are those between MARCH_PARAMETERS
@@ -56,7 +72,8 @@ void launchMarch(Call& call, const char* file, const char* kernel, const MarchVo
         call.launchRange(program, kernel, count, volume.grid.desc(), volume.gbuffer.camera, volume.mesh.positions(), volume.mesh.indices(),
                          volume.mesh.normals(), volume.mesh.materials(), volume.gbuffer.triangle, voxels.bits(), voxels.bricks(), voxels.rank(),
                          voxels.mip(), volume.surface, volume.planes, solidBits, solidBricks, voxels.materialBuffer(), volume.materials,
-                         voxels.countBuffer(), volume.triangles, volume.ends, volume.bound, args..., first);
+                         voxels.countBuffer(), volume.triangles, volume.ends, volume.bound, volume.around, volume.mesh.texcoords(), volume.texels,
+                         volume.edits, volume.editLow, volume.editSize, args..., first);
     }
 }
 
@@ -64,9 +81,16 @@ void launchMarch(Call& call, const char* file, const char* kernel, const MarchVo
 using MarchLaunch =
     std::function<void(Call& call, const MarchVolume& volume, std::uint64_t samples, const Buffer<float>& seen, const Buffer<std::uint32_t>& status)>;
 
+/// A picture of perSide x perSide samples a pixel of voxels that are there; `volume` gets the camera.
+Image marchPicture(Queue& queue, const Scene& scene, const Camera& camera, const GlassMethod& method, MarchVolume& volume, std::uint32_t perSide,
+                   const char* name, const MarchLaunch& launch);
+
 /// A picture of perSide x perSide samples a pixel.
 Image marchPicture(Queue& queue, const Scene& scene, const Camera& camera, const GlassMethod& method, std::uint32_t perSide, const char* name,
                    const MarchLaunch& launch);
+
+/// Those that are kept.
+MarchVolume& volumeOf(const GlassVoxels& voxels);
 
 }  // namespace detail
 }  // namespace v0

@@ -7,6 +7,7 @@
 #endif
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <type_traits>
@@ -48,6 +49,10 @@ public:
         auto* indices = static_cast<unsigned*>(
             rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), mesh.triangleCount()));
         std::copy(mesh.indices.begin(), mesh.indices.end(), indices);
+        if (several(mesh)) {
+            rtcSetGeometryUserData(geometry, const_cast<std::uint32_t*>(mesh.materials.data()));
+            rtcSetGeometryIntersectFilterFunction(geometry, &differs);
+        }
         rtcCommitGeometry(geometry);
         rtcAttachGeometry(scene_.get(), geometry);
         rtcReleaseGeometry(geometry);
@@ -60,11 +65,16 @@ public:
         rtcCommitScene(scene_.get());
     }
 
-    /// The nearest triangle along the ray past `least`, or kNone.
-    std::uint32_t next(const Double3& origin, const Double3& direction, double least) const {
+    /// Whether triangles name more than one material.
+    static bool several(const Mesh& mesh) {
+        return std::adjacent_find(mesh.materials.begin(), mesh.materials.end(), std::not_equal_to<>()) != mesh.materials.end();
+    }
+
+    /// The nearest triangle along the ray past `least`, or kNone; `like` given: of those with another material than its.
+    std::uint32_t next(const Double3& origin, const Double3& direction, double least, std::uint32_t like = kNone) const {
         const Float3 o(origin), d(direction);
         RTCRayHit ray{};
-        ray.ray = {o.x, o.y, o.z, static_cast<float>(least), d.x, d.y, d.z, 0, std::numeric_limits<float>::infinity(), ~0u, 0, 0};
+        ray.ray = {o.x, o.y, o.z, static_cast<float>(least), d.x, d.y, d.z, 0, std::numeric_limits<float>::infinity(), ~0u, like, 0};
         ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
 #if RTC_VERSION_MAJOR >= 4
         rtcIntersect1(scene_.get(), &ray);
@@ -92,7 +102,7 @@ public:
             a->valid[0] = 0;  // and on
         };
         const Float3 o(origin), d(direction);
-        RTCRay ray{o.x, o.y, o.z, 0, d.x, d.y, d.z, 0, std::numeric_limits<float>::infinity(), ~0u, 0, 0};
+        RTCRay ray{o.x, o.y, o.z, 0, d.x, d.y, d.z, 0, std::numeric_limits<float>::infinity(), ~0u, kNone, 0};
 #if RTC_VERSION_MAJOR >= 4
         rtcInitRayQueryContext(&query.context);
         RTCOccludedArguments arguments;
@@ -109,6 +119,12 @@ public:
     }
 
 private:
+    static void differs(const RTCFilterFunctionNArguments* args) {
+        const auto* materials = static_cast<const std::uint32_t*>(args->geometryUserPtr);
+        const std::uint32_t like = RTCRayN_id(args->ray, args->N, 0);  // one ray a call
+        if (like != kNone && materials[RTCHitN_primID(args->hit, args->N, 0)] == materials[like]) args->valid[0] = 0;
+    }
+
     struct Release {
         void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
         void operator()(RTCScene scene) const { rtcReleaseScene(scene); }

@@ -15,6 +15,7 @@
 #include <vitrail/light/boxes.h>
 #include <vitrail/light/caustics.h>
 #include <vitrail/light/glass.h>
+#include <vitrail/light/glass_voxels.h>
 #include <vitrail/light/shadow.h>
 #include <vitrail/methods.h>
 #include <vitrail/scene/mesh.h>

@@ -88,7 +88,7 @@ kernel void paper_ends(const vitrail_CameraDesc camera, const vitrail_GridDesc g
                 if (paper_surface(&paper, x, y, z, &normal, &material) && (events == 0u || dot(normal, last) < cosine)) {
                     const vitrail_MaterialDesc met = materials[material];
                     const float3 way = p - at;
-                    if (inside) through *= optics_absorb(&current, sqrt(dot(way, way)) * edge);
+                    if (inside) through *= optics_absorb(current.absorption, sqrt(dot(way, way)) * edge);
                     at = p;
                     if (met.colour.w <= 0.5f) {
                         through *= xyz(met.colour);

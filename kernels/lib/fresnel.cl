@@ -46,6 +46,6 @@ static inline bool optics_cross(float3* d, float3 facing, float3 flat, float rat
     return through;
 }
 
-static inline float3 optics_absorb(const vitrail_MaterialDesc* m, float length) { return exp(-xyz(m->absorption) * length); }
+static inline float3 optics_absorb(float4 absorption, float length) { return exp(-xyz(absorption) * length); }
 
 #endif

@@ -32,6 +32,11 @@ typedef struct {
     global const uint* indices;
     global const float* normals;
     global const uint* triangleMaterial;
+    vitrail_Media around;  // the camera
+    global const float2* texcoords;
+    global const uchar4* texels;
+    global const ushort* edits;  // lib/edits.cl; null: none
+    uint4 editLow, editSize;     // their box of cells
 } Volume;
 
 #define NO_TRIANGLE 0xffffffffu
@@ -42,15 +47,48 @@ typedef struct {
     float3 position, normal, flat;  // voxel coordinates; unit normals, outward: for shading, and of the plane
     uint material, triangle;
     bool inside;  // whether the ray came from within
+    bool edited;  // no surface, but a change of the cells' materials, to `over`
+    uint over;
+    bool placed;  // whether `texcoord` is known
+    float2 texcoord;
+    // A surface of another material in the same place, or VITRAIL_AIR, passed after the first (vitrail_first).
+    uint otherMaterial, otherTriangle;
+    bool otherInside;
 } Crossing;
 
 // A ray on its way from one surface to the next.
 typedef struct {
-    bool inside;    // glass
-    uint triangle;  // that it stands on, or NO_TRIANGLE
-    float least;    // only what lies past this distance counts
-    int steps;      // cells and bricks walked so far
+    vitrail_Media media;  // that it is inside of
+    uint triangle, otherTriangle;  // that it stands on, or NO_TRIANGLE
+    float least;  // only what lies past this distance counts
+    int steps;    // cells and bricks walked so far
 } March;
+
+// A ray at its start; inside of a body of `material` or of nothing.
+static inline March march_begin(bool inside, uint material, float least) {
+    March march;
+    march.media.depth = inside ? 1u : 0u;
+    march.media.material[0] = material;
+    march.triangle = march.otherTriangle = NO_TRIANGLE;
+    march.least = least;
+    march.steps = 0;
+    return march;
+}
+
+static inline bool march_thin(const Volume* volume, uint material) { return volume->materials[material].surface.y > 0.0f; }
+
+// The medium before a crossing; `media` becomes what is behind. Thin walls hold nothing.
+static inline uint march_pass(const Volume* volume, const Crossing* hit, vitrail_Media* media) {
+    uint before = vitrail_medium(media);
+    if (!march_thin(volume, hit->material)) before = vitrail_pass(media, hit->material, hit->inside);
+    if (hit->otherMaterial != VITRAIL_AIR && !march_thin(volume, hit->otherMaterial))
+        vitrail_pass(media, hit->otherMaterial, hit->otherInside);
+    return before;
+}
+
+static inline float march_index(const Volume* volume, uint medium) {
+    return medium == VITRAIL_AIR ? 1.0f : volume->materials[medium].absorption.w;
+}
 
 #define REACH 0.5f  // cells that a march begins before `least`, and past its own by which a plane still counts
 
@@ -64,10 +102,11 @@ static inline float3 to_world(const vitrail_GridDesc* grid, float3 p) { return p
         global const uint2 *bricks, global const uint *rank, global const uchar *mip, global const vitrail_SurfaceVoxel *surface,           \
         global const vitrail_SurfaceVoxel *planes, global const uint *solid, global const uint2 *solidBricks,                               \
         global const uint *voxelMaterial, global const vitrail_MaterialDesc *materials, global const uint *counts, global const uint *list, \
-        global const uint *end, int bound
+        global const uint *end, int bound, const vitrail_Media around, global const float2 *texcoords,            \
+        global const uchar4 *texels, global const ushort *edits, const uint4 editLow, const uint4 editSize
 #define MARCH_VOLUME                                                                                                                         \
     {&grid, words, bricks, rank, mip, surface, planes, solid, solidBricks, voxelMaterial, materials, bound, counts, list, end, positions, indices, \
-     normals, triangleMaterial}
+     normals, triangleMaterial, around, texcoords, texels, edits, editLow, editSize}
 
 // The shading normal there, or the flat one.
 static inline float3 march_shading(global const float* normals, const uint index[3], const float share[3], float3 flat) {
@@ -79,6 +118,13 @@ static inline float3 march_shading(global const float* normals, const uint index
     }
     const float length = sqrt(dot(m, m));
     return length > 0.0f ? m / length : flat;
+}
+
+static inline void march_place(const Volume* volume, const uint index[3], const float share[3], Crossing* hit) {
+    hit->placed = volume->texcoords != 0;
+    hit->texcoord = (float2)(0.0f);
+    if (!hit->placed) return;
+    for (int k = 0; k < 3; ++k) hit->texcoord += volume->texcoords[index[k]] * share[k];
 }
 
 // The triangle that the pixel sees, exactly: position and outward shading normal in voxel coordinates.

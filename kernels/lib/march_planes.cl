@@ -1,6 +1,6 @@
-// lib/march_planes.cl: the next surface along a ray, from the planes that voxels hold. One state, inside or outside, decides which count:
-// outside only planes that face the ray are entered, inside only planes that face away are left, so that neighbouring voxels that hold the
-// same surface never count it twice. A plane counts where the ray meets it in its own cell. One met a little outside counts when the ray came
+// lib/march_planes.cl: the next surface along a ray, from the planes that voxels hold. What the ray is inside of decides which count:
+// outside a material only its planes that face the ray are entered, inside it only those that face away are left, so that neighbouring voxels
+// that hold the same surface never count it twice. A voxel has one material. A plane counts where the ray meets it in its own cell. One met a little outside counts when the ray came
 // through between cells: when a cell without surface behind is known to be on the other side, or a plane of the other kind comes first.
 #ifndef VITRAIL_LIB_MARCH_PLANES
 #define VITRAIL_LIB_MARCH_PLANES
@@ -58,12 +58,15 @@ static inline bool march_solid(const Volume* volume, const Dda* dda) {
 
 // The next boundary along a ray. Opaque voxels count from outside and from inside. False: none.
 static inline bool march_next(const Volume* volume, float3 origin, float3 direction, March* march, Crossing* hit) {
-    const bool inside = march->inside;
+    const bool within = march->media.depth > 0u;  // anything
     const float tLeast = march->least;
     Dda dda;
     dda.steps = march->steps;
-    hit->inside = inside;
-    hit->triangle = NO_TRIANGLE;
+    hit->inside = within;
+    hit->triangle = hit->otherTriangle = NO_TRIANGLE;
+    hit->otherMaterial = VITRAIL_AIR;
+    hit->otherInside = hit->placed = false;
+    hit->edited = false;
     bool found = false, away = false;  // away: past a cell without surface
     float aside = 2.0f;                // how far outside its cell the candidate in `hit` was met; 2: there is none
     if (dda_start(&dda, volume->grid, origin, direction, fmax(tLeast - REACH, 0.0f))) {
@@ -71,7 +74,9 @@ static inline bool march_next(const Volume* volume, float3 origin, float3 direct
             if (aside < 2.0f && dda.enter > hit->t && dda.steps < volume->bound) {
                 const size_t at = bits_word(volume->grid, volume->bricks, (uint)dda.x, (uint)dda.y, (uint)dda.z);
                 if (!((volume->words[at] >> (dda.z & 31)) & 1u)) {
-                    if (march_solid(volume, &dda) != inside) {
+                    // The bits know inside from outside, not one body from another.
+                    const bool tells = volume->materials[hit->material].colour.w <= 0.5f || (march->media.depth <= 1u && hit->inside == within);
+                    if (tells && march_solid(volume, &dda) != within) {
                         found = true;
                         break;
                     }
@@ -92,7 +97,7 @@ static inline bool march_next(const Volume* volume, float3 origin, float3 direct
                 for (int k = 0; k < count; ++k)
                     march_facet(split ? volume->planes[first.normal + (uint)k] : first, corner, origin, direction, &facets[k]);
                 const uint material = volume->voxelMaterial[index];
-                const bool opaque = volume->materials[material].colour.w <= 0.5f;
+                const bool opaque = volume->materials[material].colour.w <= 0.5f || march_thin(volume, material), inside = vitrail_within(&march->media, material) != 0;
                 int best = -1, other = -1;
                 for (int k = 0; k < count; ++k) {
                     const float t = facets[k].t;
@@ -112,7 +117,7 @@ static inline bool march_next(const Volume* volume, float3 origin, float3 direct
                     }
                 }
                 if (other >= 0 && (best < 0 || facets[other].t < facets[best].t)) {
-                    if (!(aside < 2.0f && hit->t < facets[other].t)) march_met(&facets[other], origin, direction, material, hit);
+                    if (!(aside < 2.0f && hit->t < facets[other].t && hit->material == material)) march_met(&facets[other], origin, direction, material, hit);
                     found = true;
                     break;
                 }
@@ -124,7 +129,7 @@ static inline bool march_next(const Volume* volume, float3 origin, float3 direct
             }
             if (!dda_step(&dda, volume->grid)) break;
         }
-        if (!found && aside < 2.0f && inside && dda.steps < volume->bound) found = true;
+        if (!found && aside < 2.0f && within && dda.steps < volume->bound) found = true;
     }
     march->steps = dda.steps;
     return found;

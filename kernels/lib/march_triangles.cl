@@ -5,6 +5,7 @@
 #pragma OPENCL FP_CONTRACT OFF
 
 #define MARCH_LEAST 1e-4f  // where a march that starts on a surface begins, in cells
+#define MARCH_TOUCH 1e-3f  // along a ray, in cells: surfaces of two materials nearer than this are in one place
 
 // A ray in the space in which it is the z axis (Woop, Benthin & Wald 2013): edges that triangles share give the same number with either sign,
 // so nothing slips between them.
@@ -58,37 +59,64 @@ static inline bool march_meets(const Sheared* s, const float3 v[3], float share[
     return true;
 }
 
-// The nearest triangle that is not the one the ray stands on; of equally near ones the lowest. Its side says whether the ray was inside.
+// The nearest triangle that is not one the ray stands on; of equally near ones the lowest. Its side says whether the ray was inside.
 static inline bool march_next(const Volume* volume, float3 origin, float3 direction, March* march, Crossing* hit) {
     const float tLeast = march->least;
     Dda dda;
     dda.steps = march->steps;
-    uint nearest = NO_TRIANGLE;
-    float best = 1e30f;
+    uint nearest = NO_TRIANGLE, other = NO_TRIANGLE, material = 0u;  // other: the nearest of another material
+    float best = 1e30f, second = 1e30f;
     const Sheared s = march_shear(origin, direction);
     if (dda_start(&dda, volume->grid, origin, direction, fmax(tLeast - REACH, 0.0f))) {
         size_t word;
         while (dda_find(&dda, volume->grid, volume->words, volume->bricks, volume->mip, volume->bound, &word)) {
-            if (nearest != NO_TRIANGLE && dda.enter > best) break;
+            if (nearest != NO_TRIANGLE && dda.enter > best + MARCH_TOUCH) break;
             const uint index = bits_rank(volume->words, volume->rank, word, (uint)dda.z & 31u), end = volume->end[index];
             for (uint at = end - volume->counts[index]; at < end; ++at) {
                 const uint triangle = volume->list[at];
-                if (triangle == march->triangle) continue;
+                if (triangle == march->triangle || triangle == march->otherTriangle) continue;
                 uint corner[3];
                 float3 v[3];
                 float share[3], t;
                 march_corners(volume, triangle, corner, v);
-                if (!march_meets(&s, v, share, &t) || !(t > tLeast) || t > best || (t == best && triangle > nearest)) continue;
-                best = t;
-                nearest = triangle;
+                if (!march_meets(&s, v, share, &t) || !(t > tLeast) || t > best + MARCH_TOUCH) continue;
+                const uint own = volume->triangleMaterial ? volume->triangleMaterial[triangle] : 0u;
+                if (t < best || (t == best && triangle < nearest)) {
+                    if (nearest != NO_TRIANGLE && own != material) {
+                        second = best;
+                        other = nearest;
+                    }
+                    best = t;
+                    nearest = triangle;
+                    material = own;
+                } else if (own != material && (t < second || (t == second && triangle < other))) {
+                    second = t;
+                    other = triangle;
+                }
             }
             if (!dda_step(&dda, volume->grid)) break;
         }
     }
     march->steps = dda.steps;
     if (nearest == NO_TRIANGLE) return false;
+    hit->otherMaterial = VITRAIL_AIR;
+    hit->otherTriangle = NO_TRIANGLE;
     uint corner[3];
     float3 v[3];
+    if (other != NO_TRIANGLE && second <= best + MARCH_TOUCH) {
+        const uint its = volume->triangleMaterial[other];
+        march_corners(volume, nearest, corner, v);
+        const bool inside = dot(direction, cross(v[1] - v[0], v[2] - v[0])) > 0.0f;
+        march_corners(volume, other, corner, v);
+        const bool within = dot(direction, cross(v[1] - v[0], v[2] - v[0])) > 0.0f, first = vitrail_first(material, inside, its, within);
+        hit->otherMaterial = first ? its : material;
+        hit->otherTriangle = first ? other : nearest;
+        hit->otherInside = first ? within : inside;
+        if (!first) {
+            nearest = other;
+            material = its;
+        }
+    }
     float share[3];
     march_corners(volume, nearest, corner, v);
     march_meets(&s, v, share, &hit->t);
@@ -96,8 +124,10 @@ static inline bool march_next(const Volume* volume, float3 origin, float3 direct
     const float3 across = cross(v[1] - v[0], v[2] - v[0]);
     hit->flat = across / sqrt(dot(across, across));
     hit->normal = march_shading(volume->normals, corner, share, hit->flat);
+    march_place(volume, corner, share, hit);
     hit->triangle = nearest;
-    hit->material = volume->triangleMaterial ? volume->triangleMaterial[nearest] : 0u;
+    hit->material = material;
+    hit->edited = false;
     hit->inside = dot(direction, hit->flat) > 0.0f;
     return true;
 }

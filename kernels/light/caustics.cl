@@ -33,44 +33,47 @@ kernel void caustics_photons(MARCH_PARAMETERS, const vitrail_LightDesc light, co
     long tally[COUNTS] = {0, 0, 0, 0, 0, 0};
     FOR_RANGE(i, count, perItem) {
         const size_t pixel = first + i;
-        const uint triangle = nearest[pixel];
-        float3 o, d, position, normal, flat;
-        camera_ray(&camera, (uint)(pixel % camera.width), (uint)(pixel / camera.width), &o, &d);
-        if (triangle == NO_TRIANGLE || !march_first_hit(&grid, positions, indices, normals, triangle, o, d, &position, &normal, &flat)) continue;
+        float3 o, d, position;
+        float way;
+        Crossing hit;
+        if (!march_first(&volume, &camera, nearest, pixel, &o, &d, &hit, &way)) continue;
         ++tally[COUNT_PHOTONS];
         int3 parts = (int3)(PARTS);
-        March march = {dot(d, flat) > 0.0f, triangle, MARCH_LEAST, 0};
-        uint material = triangleMaterial ? triangleMaterial[triangle] : 0u;
-        bool opaque = materials[material].colour.w <= 0.5f, ended = false;
-        if (!opaque && !march.inside) tally[COUNT_ABSORBED] += caustics_keep(&parts, xyz(materials[material].colour));
-        for (int events = 0; !opaque;) {
-            vitrail_MaterialDesc m = materials[material];
-            const float index = m.absorption.w, ratio = march.inside ? index : 1.0f / index;
-            const float3 facing = optics_facing(d, normal, flat);
-            const float reflected = fresnel_reflectance(-dot(d, facing), ratio);
-            if (optics_cross(&d, facing, flat, ratio)) {
-                march.inside = !march.inside;
-                tally[COUNT_REFLECTED] += caustics_keep(&parts, (float3)(1.0f - reflected));
-            }
-            Crossing hit;
-            if (!march_next(&volume, position, d, &march, &hit)) {
-                ended = march.steps >= bound || march.inside;
-                break;
-            }
-            march.inside = hit.inside;
-            march.triangle = hit.triangle;
-            if (!hit.inside || hit.triangle != NO_TRIANGLE) material = hit.material;
-            m = materials[material];
-            if (hit.inside) tally[COUNT_ABSORBED] += caustics_keep(&parts, optics_absorb(&m, hit.t * grid.extent.x));
-            opaque = materials[hit.material].colour.w <= 0.5f;
-            if (!opaque && ++events == VITRAIL_MOST_EVENTS) {
-                ended = true;
-                break;
-            }
-            if (!opaque && !hit.inside) tally[COUNT_ABSORBED] += caustics_keep(&parts, xyz(m.colour));
+        March march = march_begin(false, 0u, MARCH_LEAST);
+        bool opaque = false, ended = false;
+        for (int events = 0;;) {
             position = hit.position;
-            normal = hit.normal;
-            flat = hit.flat;
+            vitrail_Media media = march.media;
+            const uint before = march_pass(&volume, &hit, &media), behind = vitrail_medium(&media);
+            if (before != VITRAIL_AIR) tally[COUNT_ABSORBED] += caustics_keep(&parts, optics_absorb(materials[before].absorption, way));
+            opaque = materials[hit.material].colour.w <= 0.5f || (hit.otherMaterial != VITRAIL_AIR && materials[hit.otherMaterial].colour.w <= 0.5f);
+            if (opaque) break;
+            const bool thin = march_thin(&volume, hit.material);
+            if (thin || before != behind) {
+                if (events++ == VITRAIL_MOST_EVENTS) {
+                    ended = true;
+                    break;
+                }
+                const float ratio = thin ? 1.0f / march_index(&volume, hit.material) : march_index(&volume, before) / march_index(&volume, behind);
+                const float3 facing = optics_facing(d, hit.normal, hit.flat);
+                const float reflected = fresnel_reflectance(-dot(d, facing), ratio);
+                if (thin || optics_cross(&d, facing, hit.flat, ratio)) {
+                    tally[COUNT_REFLECTED] += caustics_keep(&parts, (float3)(1.0f - reflected));
+                    march.media = media;
+                    if (thin || !hit.inside) tally[COUNT_ABSORBED] += caustics_keep(&parts, xyz(materials[hit.material].colour));
+                    if (hit.otherMaterial != VITRAIL_AIR && !hit.otherInside)
+                        tally[COUNT_ABSORBED] += caustics_keep(&parts, xyz(materials[hit.otherMaterial].colour));
+                }
+            } else {
+                march.media = media;
+            }
+            march.triangle = hit.triangle;
+            march.otherTriangle = hit.otherTriangle;
+            if (!march_next(&volume, position, d, &march, &hit)) {
+                ended = march.steps >= bound || march.media.depth > 0u;
+                break;
+            }
+            way = hit.t * grid.extent.x;
         }
         const int rest = caustics_sum(parts);
         if (opaque || ended) {

@@ -18,6 +18,7 @@ kernel void ends_shade(MARCH_PARAMETERS, const vitrail_LightDesc light, global c
         ends[0].position = to_voxel(&grid, xyz(from[pixel]));
         ends[0].direction = (float3)(ray.direction[0], ray.direction[1], ray.direction[2]);
         ends[0].diffuse = ray.fate == VITRAIL_RAY_OPAQUE;
+        ends[0].media = ends[1].media = volume.around;
         ends[1].weight = (float3)(0.0f);
         const uint triangle = nearest[pixel];
         float3 o, d, position, normal, flat;
@@ -37,7 +38,7 @@ kernel void ends_shade(MARCH_PARAMETERS, const vitrail_LightDesc light, global c
         }
         float3 seen = (float3)(0.0f);
         for (int k = 0; k < 2; ++k)
-            if (ends[k].weight.x + ends[k].weight.y + ends[k].weight.z > 0.0f) seen += glass_light(&volume, &light, map, caustic, place, ends[k], width);
+            if (ends[k].weight.x + ends[k].weight.y + ends[k].weight.z > 0.0f) seen += glass_light(&volume, &light, map, caustic, place, &ends[k], width);
         samples[pixel] = (float4)(seen, 1.0f);
     }
 }

@@ -70,7 +70,7 @@ static inline Path image_first(const Seen* seen, uint triangle, size_t pixel) {
 static inline void image_second(Path* path, float3 normal, float3 flat, float length) {
     if (!(dot(path->direction, flat) > 0.0f)) return;
     path->position += path->direction * length;
-    path->through *= optics_absorb(&path->material, length);
+    path->through *= optics_absorb(path->material.absorption, length);
     optics_cross(&path->direction, optics_facing(path->direction, normal, flat), flat, path->material.absorption.w);
     ++path->events;
 }

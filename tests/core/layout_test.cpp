@@ -54,6 +54,12 @@ Entries hostLayout() {
     SIZE(vitrail_MaterialDesc);
     OFFSET(vitrail_MaterialDesc, colour);
     OFFSET(vitrail_MaterialDesc, absorption);
+    OFFSET(vitrail_MaterialDesc, surface);
+    OFFSET(vitrail_MaterialDesc, mean);
+    OFFSET(vitrail_MaterialDesc, textureU);
+    OFFSET(vitrail_MaterialDesc, textureV);
+    OFFSET(vitrail_MaterialDesc, base);
+    OFFSET(vitrail_MaterialDesc, detail);
 
     SIZE(vitrail_LightDesc);
     OFFSET(vitrail_LightDesc, toLight);
@@ -74,6 +80,10 @@ Entries hostLayout() {
     OFFSET(vitrail_SurfaceVoxel, centroid);
     OFFSET(vitrail_SurfaceVoxel, slope0);
     OFFSET(vitrail_SurfaceVoxel, slope1);
+
+    SIZE(vitrail_Media);
+    OFFSET(vitrail_Media, depth);
+    OFFSET(vitrail_Media, material);
 
     SIZE(vitrail_RayEnd);
     OFFSET(vitrail_RayEnd, direction);

@@ -3,7 +3,7 @@
 #include <vitrail/core/error.h>
 #include <vitrail/light/boxes.h>
 #include <vitrail/light/caustics.h>
-#include <vitrail/light/glass.h>
+#include <vitrail/light/glass_voxels.h>
 #include <vitrail/light/shadow.h>
 #include <vitrail/vitrail.h>
 
@@ -100,6 +100,12 @@ int main() {
         for (const GlassMethod& method : {GlassMethod(Exact{.resolution = 8}), GlassMethod(One{}), GlassMethod(Two{.thickness = Two::Thickness::image}),
                                           GlassMethod(Paper{.resolution = 8, .filter = true}), GlassMethod(Plane{.resolution = 8})})
             (void)glassRays(queue, scene, camera, method);
+        {
+            GlassVoxels kept(queue, scene, Exact{.resolution = 8});
+            (void)kept.edit(queue, Brush{.centre = Float3(0.0f), .radius = 0.2f}, scene.materials[0]);
+            (void)glassRays(queue, kept, camera);
+            (void)shade(queue, kept, camera, Glass{.samples = 1, .reflections = 2}).picture();
+        }
         (void)shade(queue, scene, camera, Shadow{.method = Planes{.resolution = 8}, .samples = 1}).picture();
         (void)shade(queue, scene, camera, Shadow{.method = Counted{.resolution = 8, .slices = 40}, .samples = 1}).picture();
         (void)shade(queue, scene, camera, Shadow{.method = Uniform{.resolution = 8, .slices = 8}, .samples = 1, .lit = true}).picture();

@@ -57,6 +57,36 @@ TEST(Glass, InAFurnaceNoLightIsLostOrMade) {
     }
 }
 
+TEST(Glass, SplitRaysLoseAndMakeNoLight) {
+    for (const char* shape : {"sphere", "box"})
+        for (const std::uint32_t reflections : {1u, 3u, 8u}) {
+            Scene scene = sceneOf(makeShape(shape), 1.5f);
+            furnace(scene);
+            const Image image = shade(queue(), scene, Camera::around(scene.mesh.bounds(), 30, 20, 24, 24),
+                                      Glass{.method = Exact{.resolution = 32}, .ground = kNoGround, .samples = 1, .reflections = reflections});
+            // Each split is F + (1 - F), and a ray that is not split keeps its whole weight: 1 up to float rounding.
+            for (const Float4& p : image.picture().pixels) ASSERT_NEAR(p.y, 1.0, 1e-5) << shape << " " << reflections;
+        }
+}
+
+TEST(Glass, ReflectionsInASlabAreTheSeries) {
+    const double kept = 0.3, f = reflectedStraight(2.0);
+    Scene scene = sceneOf(makeShape("box"), 2.0f, static_cast<float>(kept));
+    furnace(scene);
+    const auto seen = [&](std::uint32_t reflections) {
+        return shade(queue(), scene, frontal(), Glass{.method = Exact{.resolution = 32}, .ground = kNoGround, .samples = 1, .reflections = reflections})
+            .picture()
+            .at(16, 16)
+            .x;
+    };
+    // Straight on, white light on both sides: what goes in is absorbed once more after each reflection within. A split too few lets the rest
+    // out at once; splits of less than 1/256 are left out, so the last term is off by at most that.
+    EXPECT_NEAR(seen(0), f + (1 - f) * kept, 1e-5);
+    EXPECT_NEAR(seen(1), f + (1 - f) * kept, 1e-5);
+    EXPECT_NEAR(seen(2), f + (1 - f) * kept * (1 - f + f * kept), 1e-5);
+    EXPECT_NEAR(seen(8), f + (1 - f) * (1 - f) * kept / (1 - f * kept), 1.0 / 256);
+}
+
 TEST(Glass, ASlabAbsorbsByItsThickness) {
     const double thickness = 1.0, kept = 0.3;  // the box's edge; after a unit of length
     Scene scene = sceneOf(makeShape("box"), 1.4f, static_cast<float>(kept));
@@ -224,6 +254,7 @@ TEST(Glass, RefusesWhatItCannotDo) {
     const Camera camera = frontal();
     EXPECT_THROW(shade(queue(), scene, camera, Glass{.method = Planes{.resolution = 4}}), Error);
     EXPECT_THROW(shade(queue(), scene, camera, Glass{.samples = 5}), Error);
+    EXPECT_THROW(shade(queue(), scene, camera, Glass{.reflections = 9}), Error);
     scene.mesh.materials.assign(scene.mesh.triangleCount(), 3);
     EXPECT_THROW(shade(queue(), scene, camera, Glass{.method = Planes{.resolution = 16}}), Error);
     scene.mesh.materials.clear();

@@ -1,4 +1,4 @@
-// vitrail/layout/ray_end.h: what became of a camera ray, and how a ray crosses a boundary: one text for the device's methods, in floats, and
+// vitrail/layout/ray_end.h: what became of a camera ray, what it is inside of, and how it crosses a boundary: one text for the device's methods, in floats, and
 // for the reference, in doubles.
 #ifndef VITRAIL_LAYOUT_RAY_END_H
 #define VITRAIL_LAYOUT_RAY_END_H
@@ -19,6 +19,50 @@ typedef struct vitrail_RayEnd {
     vitrail_uint events;
 } vitrail_RayEnd;
 VITRAIL_CHECK_SIZE(vitrail_RayEnd, 32);
+
+// The bodies that a ray is inside of by their materials, the last entered on top: that is what the ray goes through. Beyond
+// VITRAIL_MOST_NESTED the body entered takes the place of the top.
+#define VITRAIL_MOST_NESTED 8
+#define VITRAIL_AIR 0xffffffffu
+typedef struct vitrail_Media {
+    vitrail_uint depth;
+    vitrail_uint material[VITRAIL_MOST_NESTED];
+} vitrail_Media;
+VITRAIL_CHECK_SIZE(vitrail_Media, 36);
+
+static inline vitrail_uint vitrail_medium(const vitrail_Media* m) { return m->depth ? m->material[m->depth - 1] : VITRAIL_AIR; }
+
+static inline int vitrail_within(const vitrail_Media* m, vitrail_uint material) {
+    for (vitrail_uint i = 0; i < m->depth; ++i)
+        if (m->material[i] == material) return 1;
+    return 0;
+}
+
+// Past a surface of `material` met from within its body or from without. Returns the medium before; the one behind is vitrail_medium(m) then.
+// Left though never entered: the ray was in it. Entered on top of itself: it was left where the mesh has a hole.
+static inline vitrail_uint vitrail_pass(vitrail_Media* m, vitrail_uint material, int inside) {
+    vitrail_uint before = vitrail_medium(m), i = m->depth;
+    if (inside) {
+        while (i > 0 && m->material[i - 1] != material) --i;
+        if (i == 0) return material;
+        for (; i < m->depth; ++i) m->material[i - 1] = m->material[i];
+        --m->depth;
+        return before;
+    }
+    if (before == material) {
+        --m->depth;
+        before = vitrail_medium(m);
+    }
+    if (m->depth == VITRAIL_MOST_NESTED) --m->depth;
+    m->material[m->depth++] = material;
+    return before;
+}
+
+// Of two surfaces of different materials in one place, whether the first is passed before the second: one that is left comes first, so that
+// bodies that touch leave no air between them; of two entered or two left the lower material.
+static inline int vitrail_first(vitrail_uint materialA, int insideA, vitrail_uint materialB, int insideB) {
+    return insideA != insideB ? insideA : materialA < materialB;
+}
 
 #if defined(__OPENCL_VERSION__) || defined(__OPENCL_C_VERSION__)
 typedef float vitrail_optic;

@@ -6,8 +6,13 @@
 typedef struct vitrail_MaterialDesc {
     vitrail_float4 colour;      // linear RGB of the surface; w = transmission: above 0.5 the material is glass, else opaque
     vitrail_float4 absorption;  // Beer-Lambert, per world unit and channel; w = index of refraction
+    vitrail_float4 surface;     // roughness; 1 thin walled, 0 a body; alpha; below which alpha nothing is there, or -1: alpha is coverage
+    vitrail_float4 mean;        // of the textures, for surfaces met where texture coordinates are not known: linear RGB, transmission
+    vitrail_float4 textureU, textureV;  // x u + y v + z: where in the textures a point lies
+    vitrail_uint4 base;         // texture of colour and alpha: its first texel, width (0: none), height; w = 0
+    vitrail_uint4 detail;       // texture that multiplies transmission (red) and roughness (green)
 } vitrail_MaterialDesc;
-VITRAIL_CHECK_SIZE(vitrail_MaterialDesc, 32);
+VITRAIL_CHECK_SIZE(vitrail_MaterialDesc, 128);
 
 typedef struct vitrail_LightDesc {
     vitrail_float4 toLight;     // unit direction from the scene to the light, world; w = 0

@@ -13,9 +13,11 @@ namespace reference {
 /// One entry a pixel, row 0 at the top: the ray through (x + 0.5 + shiftX, y + 0.5 + shiftY). Snell's law at every triangle with the
 /// interpolated shading normal (of the face where the mesh has none), total internal reflection, no Fresnel reflection, at most
 /// VITRAIL_MOST_EVENTS events; which side a ray comes from is decided by the geometric normal, what contradicts by
-/// layout/ray_end.h. Transmittance by Beer-Lambert along each stretch inside, and the colour of each material entered. Outside every
-/// material is air: bodies may lie apart or beside each other, not one in another. Embree (robust) finds triangles; positions on them,
-/// directions and attenuation are doubles. All cores. Throws Error (badInput): a material out of range.
+/// layout/ray_end.h. Transmittance by Beer-Lambert along each stretch inside, and the colour of each material entered or thin wall passed.
+/// Bodies may lie in one another and touch (1e-5 of the scene or nearer): a ray keeps what it is inside of (vitrail_pass), the camera's
+/// surroundings included; a body that was entered last is what fills a place that two share. Textures, roughness and partial transmission are
+/// left out. Embree (robust) finds triangles; positions on them, directions and attenuation are doubles. All cores. Throws Error (badInput):
+/// a material out of range.
 std::vector<vitrail_RayEnd> glass(const Scene& scene, const Camera& camera, double shiftX = 0, double shiftY = 0);
 
 }  // namespace reference
