@@ -43,12 +43,12 @@ RayErrors compareRays(std::span<const vitrail_RayEnd> rays, std::span<const vitr
     std::uint64_t correct = 0, close = 0, stableCorrect = 0;
     for (std::size_t i = 0; i < truth.size(); ++i) {
         const vitrail_RayEnd &ray = rays[i], &must = truth[i];
-        if (must.fate != VITRAIL_RAY_LEFT) {
+        if (must.fate != VITRAIL_RAY_LEFT && must.fate != VITRAIL_RAY_LOST) {
             ++errors.faults[static_cast<std::size_t>(RayFault::outside)];
             continue;
         }
         ++errors.pixels;
-        const bool left = ray.fate == VITRAIL_RAY_LEFT;
+        const bool left = ray.fate == must.fate;
         const double c = left ? cosine(ray, must) : -1.0;
         const bool good = c > kCorrectCosine;
         correct += good;
@@ -60,7 +60,7 @@ RayErrors compareRays(std::span<const vitrail_RayEnd> rays, std::span<const vitr
         errors.transmittanceMean += off;
         bool stable = !shifted.empty();
         for (const std::vector<vitrail_RayEnd>& one : shifted)
-            stable = stable && one[i].fate == VITRAIL_RAY_LEFT && cosine(one[i], must) > kCorrectCosine;
+            stable = stable && one[i].fate == must.fate && cosine(one[i], must) > kCorrectCosine;
         errors.stablePixels += stable;
         stableCorrect += stable && good;
         const RayFault why = good                                 ? RayFault::none

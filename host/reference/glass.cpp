@@ -31,10 +31,14 @@ public:
         vitrail_RayEnd end{};
         Double3 through(1.0);
         double least = 0;
+        bool within = false;  // past the last surface, by its side
         end.fate = VITRAIL_RAY_MISSED;
         for (;;) {
             const std::uint32_t nearest = triangles_.next(origin, direction, least);
-            if (nearest == kNone) break;
+            if (nearest == kNone) {
+                if (within) end.fate = VITRAIL_RAY_LOST;
+                break;
+            }
             Surface one(*this, nearest, origin, direction), other;
             if (several_) {
                 // A surface of another material in the same place.
@@ -62,7 +66,9 @@ public:
             end.fate = VITRAIL_RAY_LEFT;
             origin += direction * one.length;
             least = other.triangle != kNone ? touch_ : least_;
+            within = !one.inside;
             if (isThin(one)) {
+                within = false;
                 through *= Double3(scene_.materials[one.material].baseColour);
                 ++end.events;
                 continue;
@@ -78,6 +84,8 @@ public:
                 media = past;
                 for (const Surface* entered : {&one, &other})
                     if (entered->triangle != kNone && !entered->inside) through *= Double3(scene_.materials[entered->material].baseColour);
+            } else {
+                within = one.inside;
             }
             direction = {out[0], out[1], out[2]};
             ++end.events;

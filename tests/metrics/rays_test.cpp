@@ -40,6 +40,16 @@ TEST(CompareRays, NamesTheFault) {
     EXPECT_EQ(errors.faults, (std::array<std::uint64_t, 7>{1, 3, 1, 1, 1, 1, 1}));
 }
 
+// By a hole of the mesh, which a method has to know of.
+TEST(CompareRays, JudgesRaysThatLeaveAnOpenMesh) {
+    const std::vector<vitrail_RayEnd> truth(3, turned(0, 1, VITRAIL_RAY_LOST)),
+        rays{turned(1, 1, VITRAIL_RAY_LOST), turned(0, 1), turned(20, 1, VITRAIL_RAY_LOST)};
+    std::vector<RayFault> why;
+    const RayErrors errors = compareRays(rays, truth, {}, &why);
+    EXPECT_EQ(errors.pixels, 3u);
+    EXPECT_EQ(why, (std::vector<RayFault>{RayFault::none, RayFault::held, RayFault::drifted}));
+}
+
 TEST(CompareRays, StablePixelsAreTheReferencesOwn) {
     const std::vector<vitrail_RayEnd> truth{turned(0), turned(0), turned(0)}, rays{turned(0), turned(30), turned(30)};
     const std::vector<std::vector<vitrail_RayEnd>> shifted{{turned(4), turned(4), turned(6)}, {turned(0), turned(0), turned(0)}};

@@ -52,6 +52,16 @@ TEST(GlassTruth, ASlabShiftsRaysAndAbsorbsAlongTheBentWay) {
     }
 }
 
+TEST(GlassTruth, ARayThatFindsNoWayOutIsLost) {
+    Mesh square;
+    square.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+    square.indices = {0, 1, 2, 0, 2, 3};
+    for (const float side : {3.0f, -3.0f}) {
+        const vitrail_RayEnd end = reference::glass(sceneOf(square, 1.5f), along(Float3(0.1f, 0.2f, side), Float3(0.1f, 0.2f, 0), 1))[0];
+        EXPECT_EQ(end.fate, side > 0 ? VITRAIL_RAY_LOST : VITRAIL_RAY_LEFT) << "entered from the front, left from behind";
+    }
+}
+
 TEST(GlassTruth, APrismBendsOrReflectsTotally) {
     // Straight onto the long face of a right-angle prism: 45 degrees on the short ones.
     Mesh prism;

@@ -16,8 +16,8 @@ namespace reference {
 /// layout/ray_end.h. Transmittance by Beer-Lambert along each stretch inside, and the colour of each material entered or thin wall passed.
 /// Bodies may lie in one another and touch (1e-5 of the scene or nearer): a ray keeps what it is inside of (vitrail_pass), the camera's
 /// surroundings included; a body that was entered last is what fills a place that two share. Textures, roughness and partial transmission are
-/// left out. Embree (robust) finds triangles; positions on them, directions and attenuation are doubles. All cores. Throws Error (badInput):
-/// a material out of range.
+/// left out. A ray that enters by its last surface, or is reflected within, is lost: the mesh is open. Embree (robust) finds triangles; positions
+/// on them, directions and attenuation are doubles. All cores. Throws Error (badInput): a material out of range.
 std::vector<vitrail_RayEnd> glass(const Scene& scene, const Camera& camera, double shiftX = 0, double shiftY = 0);
 
 }  // namespace reference
