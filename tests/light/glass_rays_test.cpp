@@ -126,8 +126,13 @@ TEST(GlassRays, FlickerNoMoreThanTheReference) {
         const Scene before = frame(waves, 0), after = frame(waves, 1);
         const double own = turnedShare(reference::glass(before, camera), reference::glass(after, camera));
         EXPECT_GT(own, 0.01);
-        for (const GlassMethod& method : {GlassMethod(Planes{.resolution = 96}), GlassMethod(Exact{.resolution = 48})})
-            EXPECT_LE(turnedShare(glassRays(queue(), before, camera, method).ends, glassRays(queue(), after, camera, method).ends), 1.5 * own)
+        // The second surface of Two is looked up where a thickness in whole voxels, or in pixels, leads: what changes there changes at once.
+        const std::pair<GlassMethod, double> limits[] = {{Planes{.resolution = 96}, 1.5},
+                                                         {Exact{.resolution = 48}, 1.5},
+                                                         {Two{.resolution = 96}, 3},
+                                                         {Two{.thickness = Two::Thickness::image}, 2}};
+        for (const auto& [method, most] : limits)
+            EXPECT_LE(turnedShare(glassRays(queue(), before, camera, method).ends, glassRays(queue(), after, camera, method).ends), most * own)
                 << (waves ? "waves" : "turned");
     }
 }
