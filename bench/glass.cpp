@@ -91,6 +91,7 @@ void bench(benchmark::State& state, Queue& queue, const Scene& scene, const Trut
         mean.medianDegrees += one.medianDegrees / kViews;
         mean.worstDegrees += one.worstDegrees / kViews;
         mean.transmittanceMean += one.transmittanceMean / kViews;
+        mean.relativeMse += one.relativeMse / kViews;
         least = std::min(least, one.correct);
     }
     double wallMs = 0;
@@ -111,6 +112,7 @@ void bench(benchmark::State& state, Queue& queue, const Scene& scene, const Trut
     state.counters["medianDegrees"] = mean.medianDegrees;
     state.counters["worstDegrees"] = mean.worstDegrees;
     state.counters["transmittanceMean"] = mean.transmittanceMean;
+    state.counters["relativeMse"] = mean.relativeMse;
     state.counters["referenceMs"] = truth.milliseconds;
     state.counters["occupied"] = static_cast<double>(report.occupied);
     state.counters["triangles"] = static_cast<double>(report.triangles);

@@ -120,11 +120,11 @@ int runJudge(const Options& options) {
         return std::string(text);
     };
     Table table;
-    table.row({"view", "pixels", "correct", "within 1 deg", "median deg", "95 % deg", "stable", "stable correct", "transmittance off"});
+    table.row({"view", "pixels", "correct", "within 1 deg", "median deg", "95 % deg", "stable", "stable correct", "transmittance off", "picture, rel. MSE"});
     for (const View& view : views) {
         const RayErrors& e = view.errors;
         table.row({"yaw " + angle(view.yaw), countText(e.pixels), rate(e.correct), rate(e.close), angle(e.medianDegrees), angle(e.worstDegrees),
-                   rate(e.pixels == 0 ? 1.0 : double(e.stablePixels) / double(e.pixels)), rate(e.stableCorrect), angle(e.transmittanceMean)});
+                   rate(e.pixels == 0 ? 1.0 : double(e.stablePixels) / double(e.pixels)), rate(e.stableCorrect), angle(e.transmittanceMean), angle(e.relativeMse)});
     }
     std::fputs((options.scene + ": " + options.method + " in a grid of " + grid + "\n" + table.text() + "mean: correct " + rate(correct) + " (least " + rate(least) + "), stable " +
                 rate(stable) + "\n" + (options.faults.empty() ? "" : options.faults + "\n"))

@@ -169,6 +169,7 @@ Json record(const RayErrors& errors) {
             {"worstDegrees", errors.worstDegrees},
             {"stablePixels", errors.stablePixels},
             {"stableCorrect", errors.stableCorrect},
+            {"relativeMse", errors.relativeMse},
             {"transmittanceMean", errors.transmittanceMean},
             {"transmittanceWorst", errors.transmittanceWorst},
             {"faults", std::move(faults)}};

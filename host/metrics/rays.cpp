@@ -1,5 +1,6 @@
 #include <vitrail/core/error.h>
 #include <vitrail/metrics/rays.h>
+#include <vitrail/scene/scene.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +19,15 @@ double cosine(const vitrail_RayEnd& a, const vitrail_RayEnd& b) {
         bb += double(b.direction[k]) * b.direction[k];
     }
     return std::clamp(sum / std::sqrt(aa * bb), -1.0, 1.0);
+}
+
+/// What a ray shows under a plain sky; what did not leave is black.
+Double3 seen(const vitrail_RayEnd& ray) {
+    if (ray.fate != VITRAIL_RAY_LEFT && ray.fate != VITRAIL_RAY_LOST) return Double3(0.0);
+    const Environment sky;
+    const double height = ray.direction[1], share = std::sqrt(std::min(std::fabs(height), 1.0));
+    return Double3(ray.transmittance[0], ray.transmittance[1], ray.transmittance[2]) *
+           glm::mix(Double3(sky.horizon), Double3(height >= 0 ? sky.zenith : sky.nadir), share);
 }
 
 /// The value below which `share` of them lie.
@@ -58,6 +68,8 @@ RayErrors compareRays(std::span<const vitrail_RayEnd> rays, std::span<const vitr
         for (int k = 0; k < 3; ++k) off += std::fabs(double(ray.transmittance[k]) - must.transmittance[k]) / 3;
         transmittance.push_back(off);
         errors.transmittanceMean += off;
+        const Double3 shown = seen(must), error = seen(ray) - shown;
+        for (int k = 0; k < 3; ++k) errors.relativeMse += error[k] * error[k] / (3 * (shown[k] * shown[k] + 0.01));
         bool stable = !shifted.empty();
         for (const std::vector<vitrail_RayEnd>& one : shifted)
             stable = stable && one[i].fate == must.fate && cosine(one[i], must) > kCorrectCosine;
@@ -79,7 +91,10 @@ RayErrors compareRays(std::span<const vitrail_RayEnd> rays, std::span<const vitr
     errors.medianDegrees = quantile(degrees, 0.5);
     errors.worstDegrees = quantile(degrees, 0.95);
     errors.transmittanceWorst = quantile(transmittance, 0.95);
-    if (errors.pixels != 0) errors.transmittanceMean /= double(errors.pixels);
+    if (errors.pixels != 0) {
+        errors.transmittanceMean /= double(errors.pixels);
+        errors.relativeMse /= double(errors.pixels);
+    }
     return errors;
 }
 

@@ -65,5 +65,13 @@ TEST(CompareRays, MeasuresTransmittance) {
     EXPECT_THROW((void)compareRays(rays, std::span(truth).first(1)), Error);
 }
 
+// The sky is 0.95 at the horizon; half of it in one pixel of two, and nothing in the other.
+TEST(CompareRays, MeasuresThePicture) {
+    const std::vector<vitrail_RayEnd> truth{turned(0), turned(40)}, rays{turned(30, 2, VITRAIL_RAY_LEFT, 0.5f), turned(40, 2, VITRAIL_RAY_BOUNDED)};
+    const double white = 0.95 * 0.95;
+    EXPECT_NEAR(compareRays(rays, truth).relativeMse, (white / 4 + white) / 2 / (white + 0.01), 1e-6);
+    EXPECT_EQ(compareRays(truth, truth).relativeMse, 0);
+}
+
 }  // namespace
 }  // namespace vitrail

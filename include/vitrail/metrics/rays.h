@@ -33,6 +33,7 @@ struct RayErrors {
     std::uint64_t stablePixels = 0;   ///< of these, whose reference stays within kCorrectCosine at all shifted positions
     double stableCorrect = 0;         ///< share of those within kCorrectCosine
     double transmittanceMean = 0, transmittanceWorst = 0;  ///< absolute error, mean of channels; of all pixels; 95th percentile
+    double relativeMse = 0;  ///< of the picture under the sky of Environment{}: mean square of the error over (truth^2 + 0.01), these pixels
     std::array<std::uint64_t, 7> faults{};  ///< pixels by RayFault
 };
 
