@@ -17,12 +17,12 @@
 #include <vitrail/methods.h>
 #include <vitrail/metrics/rays.h>
 #include <vitrail/raster/gbuffer.h>
-#include <vitrail/reference/glass.h>
 #include <vitrail/scene/shapes.h>
 #include <vitrail/voxelize/lists.h>
 #include <vitrail/voxelize/solid.h>
 #include <vitrail/voxelize/surface.h>
 
+#include "glass_truth.h"
 #include "inputs.h"
 #include "native/embree_glass.h"
 
@@ -30,8 +30,7 @@ namespace {
 
 using namespace vitrail;
 
-constexpr std::uint32_t kPixels = 512;
-constexpr unsigned kViews = 4, kPhases = 2;
+constexpr unsigned kPhases = 2;
 constexpr float kIndex = 1.14f;
 
 double millisecondsSince(std::chrono::steady_clock::time_point start) {
@@ -68,23 +67,6 @@ std::vector<Input> inputs() {
     add("dragon_vrip_res2+1", "meshes/dragon_vrip_res2.ply", 1);
     return all;
 }
-
-Camera view(const Scene& scene, unsigned k) {
-    return Camera::around(scene.mesh.bounds(), 30.0f + 90.0f * static_cast<float>(k), 20.0f, kPixels, kPixels);
-}
-
-struct Truth {
-    std::vector<vitrail_RayEnd> ends[kViews];
-    std::vector<std::vector<vitrail_RayEnd>> shifted[kViews];
-
-    explicit Truth(const Scene& scene) {
-        for (unsigned k = 0; k < kViews; ++k) {
-            ends[k] = reference::glass(scene, view(scene, k));
-            for (const double x : {-0.25, 0.25})
-                for (const double y : {-0.25, 0.25}) shifted[k].push_back(reference::glass(scene, view(scene, k), x, y));
-        }
-    }
-};
 
 struct Rates {
     double correct = 0, stableCorrect = 0, events = 0;

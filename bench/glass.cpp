@@ -22,17 +22,15 @@
 #include <vitrail/light/glass.h>
 #include <vitrail/methods.h>
 #include <vitrail/metrics/rays.h>
-#include <vitrail/reference/glass.h>
 #include <vitrail/scene/shapes.h>
 
+#include "glass_truth.h"
 #include "inputs.h"
 
 namespace {
 
 using namespace vitrail;
 
-constexpr std::uint32_t kPixels = 512;
-constexpr unsigned kViews = 4;
 
 struct Input {
     std::string name;
@@ -55,28 +53,6 @@ std::vector<Input> inputs() {
     }
     return all;
 }
-
-Camera view(const Scene& scene, unsigned k) {
-    return Camera::around(scene.mesh.bounds(), 30.0f + 90.0f * static_cast<float>(k), 20.0f, kPixels, kPixels);
-}
-
-/// What the reference says of a scene, when first asked.
-struct Truth {
-    std::vector<vitrail_RayEnd> ends[kViews];
-    std::vector<std::vector<vitrail_RayEnd>> shifted[kViews];
-    double milliseconds = 0;  ///< of one view, Embree's build included
-
-    explicit Truth(const Scene& scene) {
-        for (unsigned k = 0; k < kViews; ++k) {
-            const Camera camera = view(scene, k);
-            const auto start = std::chrono::steady_clock::now();
-            ends[k] = reference::glass(scene, camera);
-            milliseconds += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count() / kViews;
-            for (const double x : {-0.25, 0.25})
-                for (const double y : {-0.25, 0.25}) shifted[k].push_back(reference::glass(scene, camera, x, y));
-        }
-    }
-};
 
 void bench(benchmark::State& state, Queue& queue, const Scene& scene, const Truth& truth, const GlassMethod& method) {
     RayErrors mean;

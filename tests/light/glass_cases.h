@@ -7,18 +7,23 @@
 
 namespace vitrail::test {
 
-/// One glass, without tint unless `attenuation` is below 1 after a unit of length.
-inline Scene glassOf(Mesh mesh, float indexOfRefraction, float attenuation = 1.0f) {
-    Scene scene;
-    scene.mesh = std::move(mesh);
-    if (scene.mesh.normals.empty()) scene.mesh = withSmoothNormals(scene.mesh, 30.0f);
+/// Clear, or of it `kept` after a unit of length.
+inline Material clearGlass(float indexOfRefraction, Float3 kept = Float3(1.0f)) {
     Material glass;
     glass.baseColour = Float3(1.0f);
     glass.transmission = 1.0f;
     glass.indexOfRefraction = indexOfRefraction;
-    glass.attenuationColour = Float3(attenuation);
+    glass.attenuationColour = kept;
     glass.attenuationDistance = 1.0f;
-    scene.materials = {glass};
+    return glass;
+}
+
+/// A shape of that glass.
+inline Scene glassOf(Mesh mesh, float indexOfRefraction, float kept = 1.0f) {
+    Scene scene;
+    scene.mesh = std::move(mesh);
+    if (scene.mesh.normals.empty()) scene.mesh = withSmoothNormals(scene.mesh, 30.0f);
+    scene.materials = {clearGlass(indexOfRefraction, Float3(kept))};
     return scene;
 }
 

@@ -1,33 +1,18 @@
 // Glass and its shadow against closed forms: a slab, a sphere, and a furnace in which nothing may get lost.
 #include <gtest/gtest.h>
 #include <vitrail/core/error.h>
-#include <vitrail/light/glass.h>
 #include <vitrail/light/shadow.h>
-#include <vitrail/scene/shapes.h>
 
 #include <cmath>
 
+#include "tests/light/glass_cases.h"
 #include "tests/support/device.h"
 
 namespace vitrail {
 namespace {
 
+using test::glassOf;
 using test::queue;
-
-/// A closed shape of one glass, without tint unless `attenuation` is below 1 after a unit of length.
-Scene sceneOf(Mesh mesh, float indexOfRefraction, float attenuation = 1.0f) {
-    Scene scene;
-    scene.mesh = std::move(mesh);
-    if (scene.mesh.normals.empty()) scene.mesh = withSmoothNormals(scene.mesh, 30.0f);
-    Material glass;
-    glass.baseColour = Float3(1.0f);
-    glass.transmission = 1.0f;
-    glass.indexOfRefraction = indexOfRefraction;
-    glass.attenuationColour = Float3(attenuation);
-    glass.attenuationDistance = 1.0f;
-    scene.materials = {glass};
-    return scene;
-}
 
 /// The same light from everywhere.
 void furnace(Scene& scene) { scene.environment.zenith = scene.environment.horizon = scene.environment.nadir = Float3(1.0f); }
@@ -47,7 +32,7 @@ double reflectedStraight(double n) { return std::pow((n - 1) / (n + 1), 2); }
 
 TEST(Glass, InAFurnaceNoLightIsLostOrMade) {
     for (const char* shape : {"sphere", "box", "torus"}) {
-        Scene scene = sceneOf(makeShape(shape), 1.5f);
+        Scene scene = glassOf(makeShape(shape), 1.5f);
         furnace(scene);
         const Image image = shade(queue(), scene, Camera::around(scene.mesh.bounds(), 30, 20, 48, 48),
                                   Glass{.method = Planes{.resolution = 64}, .ground = kNoGround, .samples = 1});
@@ -60,7 +45,7 @@ TEST(Glass, InAFurnaceNoLightIsLostOrMade) {
 TEST(Glass, SplitRaysLoseAndMakeNoLight) {
     for (const char* shape : {"sphere", "box"})
         for (const std::uint32_t reflections : {1u, 3u, 8u}) {
-            Scene scene = sceneOf(makeShape(shape), 1.5f);
+            Scene scene = glassOf(makeShape(shape), 1.5f);
             furnace(scene);
             const Image image = shade(queue(), scene, Camera::around(scene.mesh.bounds(), 30, 20, 24, 24),
                                       Glass{.method = Exact{.resolution = 32}, .ground = kNoGround, .samples = 1, .reflections = reflections});
@@ -71,7 +56,7 @@ TEST(Glass, SplitRaysLoseAndMakeNoLight) {
 
 TEST(Glass, ReflectionsInASlabAreTheSeries) {
     const double kept = 0.3, f = reflectedStraight(2.0);
-    Scene scene = sceneOf(makeShape("box"), 2.0f, static_cast<float>(kept));
+    Scene scene = glassOf(makeShape("box"), 2.0f, static_cast<float>(kept));
     furnace(scene);
     const auto seen = [&](std::uint32_t reflections) {
         return shade(queue(), scene, frontal(), Glass{.method = Exact{.resolution = 32}, .ground = kNoGround, .samples = 1, .reflections = reflections})
@@ -89,7 +74,7 @@ TEST(Glass, ReflectionsInASlabAreTheSeries) {
 
 TEST(Glass, ASlabAbsorbsByItsThickness) {
     const double thickness = 1.0, kept = 0.3;  // the box's edge; after a unit of length
-    Scene scene = sceneOf(makeShape("box"), 1.4f, static_cast<float>(kept));
+    Scene scene = glassOf(makeShape("box"), 1.4f, static_cast<float>(kept));
     furnace(scene);
     ASSERT_NEAR(scene.mesh.bounds().high.z - scene.mesh.bounds().low.z, thickness, 1e-6);
     const Image image = shade(queue(), scene, frontal(), Glass{.method = Planes{.resolution = 32}, .ground = kNoGround, .samples = 1});
@@ -122,7 +107,7 @@ glm::dvec3 refract(glm::dvec3 d, glm::dvec3 n, double ratio) {
 
 TEST(Glass, ASphereBendsRaysBySnellsLaw) {
     const double eta = 1.5;
-    Scene scene = sceneOf(makeShape("sphere"), static_cast<float>(eta));
+    Scene scene = glassOf(makeShape("sphere"), static_cast<float>(eta));
     scene.environment.map = directionMap();
     const float size = scene.mesh.bounds().high.x;
     const Camera camera = frontal(64);
@@ -162,7 +147,7 @@ TEST(Glass, TotalReflectionTurnsRaysInAPrism) {
     ASSERT_TRUE(inspect(prism).closed());
     ASSERT_GT(inspect(prism).signedVolume, 0);
     for (const auto& [eta, returns] : {std::pair(1.5f, true), std::pair(1.3f, false)}) {
-        Scene scene = sceneOf(prism, eta);
+        Scene scene = glassOf(prism, eta);
         scene.environment.map = directionMap();
         Camera camera;
         camera.eye = Float3(0.3f, 0.5f, 3.0f);
@@ -179,7 +164,7 @@ TEST(Glass, TotalReflectionTurnsRaysInAPrism) {
 }
 
 TEST(Glass, OpaqueMaterialsEndARay) {
-    Scene scene = sceneOf(makeShape("box"), 1.5f);
+    Scene scene = glassOf(makeShape("box"), 1.5f);
     scene.materials[0].transmission = 0;
     scene.materials[0].baseColour = Float3(1.0f, 0.0f, 0.0f);
     furnace(scene);
@@ -190,7 +175,7 @@ TEST(Glass, OpaqueMaterialsEndARay) {
 
 TEST(Shadow, OfASlabIsItsTransmittance) {
     const double kept = 0.5, eta = 1.5, f = reflectedStraight(eta);
-    Scene scene = sceneOf(makeShape("box"), static_cast<float>(eta), static_cast<float>(kept));
+    Scene scene = glassOf(makeShape("box"), static_cast<float>(eta), static_cast<float>(kept));
     scene.light.toLight = Float3(0, 1, 0);
     Camera camera;
     camera.eye = Float3(3.0f, -0.45f, 0.0f);  // low, so that the ground under the box is looked at from the side, through nothing
@@ -214,7 +199,7 @@ TEST(Shadow, OfASlabIsItsTransmittance) {
 }
 
 TEST(Shadow, BehindOpaqueThingsIsDark) {
-    Scene scene = sceneOf(makeShape("sphere"), 1.5f);
+    Scene scene = glassOf(makeShape("sphere"), 1.5f);
     scene.materials[0].transmission = 0;
     scene.light.toLight = Float3(0.2f, 1, 0.1f);
     const Image image = shade(queue(), scene, Camera::around(scene.mesh.bounds(), 0, 40, 64, 64), Shadow{.method = Planes{.resolution = 32}, .samples = 1});
@@ -231,12 +216,12 @@ TEST(Shadow, BehindOpaqueThingsIsDark) {
 TEST(Glass, SaysWhenRaysLeaveAnOpenMesh) {
     Mesh open = makeShape("sphere");
     open.indices.resize(open.indices.size() / 2);
-    Scene scene = sceneOf(open, 1.3f);
+    Scene scene = glassOf(open, 1.3f);
     EXPECT_GT(shade(queue(), scene, Camera::around(open.bounds(), 0, 30, 32, 32), Glass{.method = Planes{.resolution = 32}, .samples = 1}).report().lostRays, 0u);
 }
 
 TEST(Glass, TwiceIsTheSameAndTakesNothingNew) {
-    Scene scene = sceneOf(makeShape("torus"), 1.5f, 0.8f);
+    Scene scene = glassOf(makeShape("torus"), 1.5f, 0.8f);
     const Camera camera = Camera::around(scene.mesh.bounds(), 30, 20, 40, 40);
     const Glass effect{.method = Planes{.resolution = 48}};
     const std::vector<Float4> first = shade(queue(), scene, camera, effect).picture().pixels;
@@ -250,7 +235,7 @@ TEST(Glass, TwiceIsTheSameAndTakesNothingNew) {
 }
 
 TEST(Glass, RefusesWhatItCannotDo) {
-    Scene scene = sceneOf(makeShape("box"), 1.5f);
+    Scene scene = glassOf(makeShape("box"), 1.5f);
     const Camera camera = frontal();
     EXPECT_THROW(shade(queue(), scene, camera, Glass{.method = Planes{.resolution = 4}}), Error);
     EXPECT_THROW(shade(queue(), scene, camera, Glass{.samples = 5}), Error);

@@ -4,27 +4,18 @@
 #include <vitrail/light/glass_voxels.h>
 #include <vitrail/metrics/rays.h>
 #include <vitrail/reference/glass.h>
-#include <vitrail/scene/shapes.h>
 
 #include <cmath>
 #include <cstring>
 
+#include "tests/light/glass_cases.h"
 #include "tests/support/device.h"
 
 namespace vitrail {
 namespace {
 
+using test::clearGlass;
 using test::queue;
-
-Material glassOf(float index, Float3 kept = Float3(1.0f)) {
-    Material glass;
-    glass.baseColour = Float3(1.0f);
-    glass.transmission = 1.0f;
-    glass.indexOfRefraction = index;
-    glass.attenuationColour = kept;
-    glass.attenuationDistance = 1.0f;
-    return glass;
-}
 
 Scene cube(const Material& material) {
     Scene scene;
@@ -38,7 +29,7 @@ Camera around(const Scene& scene, std::uint32_t pixels = 96) { return Camera::ar
 const Bounds kHalf{Float3(0.0f, -1.0f, -1.0f), Float3(1.0f, 1.0f, 1.0f)};  // of the cube, x above 0
 
 TEST(GlassVoxels, HalfACubeEditedIsTwoBodiesThatTouch) {
-    const Material a = glassOf(1.2f, Float3(0.9f, 0.5f, 0.5f)), b = glassOf(1.5f, Float3(0.3f, 0.9f, 0.6f));
+    const Material a = clearGlass(1.2f, Float3(0.9f, 0.5f, 0.5f)), b = clearGlass(1.5f, Float3(0.3f, 0.9f, 0.6f));
     Scene two;
     for (const bool right : {false, true}) {
         Mesh half = withSmoothNormals(makeShape("box"), 45.0f);
@@ -66,18 +57,18 @@ TEST(GlassVoxels, HalfACubeEditedIsTwoBodiesThatTouch) {
 // A ball painted into the cube, and a ball as a body of its own.
 TEST(GlassVoxels, ABrushIsABall) {
     for (const float index : {1.2f, 1.5f}) {
-        Scene body = cube(glassOf(1.2f));
+        Scene body = cube(clearGlass(1.2f));
         body.mesh.materials.assign(body.mesh.triangleCount(), 0);
         Mesh ball = withSmoothNormals(makeShape("sphere"), 45.0f);
         for (Float3& p : ball.positions) p *= 0.6f;
         ball.materials.assign(ball.triangleCount(), 1);
         body.mesh.append(ball);
-        const Material painted = glassOf(index, Float3(0.2f, 0.8f, 0.9f));
+        const Material painted = clearGlass(index, Float3(0.2f, 0.8f, 0.9f));
         body.materials.push_back(painted);
         const Camera camera = around(body, 64);
         const auto truth = reference::glass(body, camera);
-        GlassVoxels brushed(queue(), cube(glassOf(1.2f)), Exact{.resolution = 128}), poured(queue(), cube(glassOf(1.2f)), Exact{.resolution = 128}),
-            said(queue(), cube(glassOf(1.2f)), Exact{.resolution = 128});
+        GlassVoxels brushed(queue(), cube(clearGlass(1.2f)), Exact{.resolution = 128}), poured(queue(), cube(clearGlass(1.2f)), Exact{.resolution = 128}),
+            said(queue(), cube(clearGlass(1.2f)), Exact{.resolution = 128});
         const std::uint64_t cells = brushed.edit(queue(), Brush{Float3(0.0f), 0.3f}, painted);
         // The volume of the ball in cells, to the surface's third of a percent.
         EXPECT_NEAR(double(cells), 4.0 / 3 * M_PI * std::pow(0.3 * 128, 3), 0.01 * double(cells));
@@ -95,30 +86,30 @@ TEST(GlassVoxels, ABrushIsABall) {
 }
 
 TEST(GlassVoxels, ARayStraightThroughAbsorbsByCell) {
-    GlassVoxels voxels(queue(), cube(glassOf(1.3f, Float3(0.5f))), Exact{.resolution = 64});
+    GlassVoxels voxels(queue(), cube(clearGlass(1.3f, Float3(0.5f))), Exact{.resolution = 64});
     Camera camera;
     camera.eye = Float3(5, 0.1f, 0.07f);
     camera.target = Float3(0, 0.1f, 0.07f);
     camera.orthographicHeight = 0.01f;
     camera.width = camera.height = 1;
     EXPECT_NEAR(glassRays(queue(), voxels, camera).ends[0].transmittance[0], 0.5, 1e-5);
-    voxels.edit(queue(), kHalf, glassOf(1.3f, Float3(0.2f)));
+    voxels.edit(queue(), kHalf, clearGlass(1.3f, Float3(0.2f)));
     // The grid is 1 / 10001 of its edge wider than the cube: halves change 5e-5 from the middle at most.
     EXPECT_NEAR(glassRays(queue(), voxels, camera).ends[0].transmittance[0], std::sqrt(0.5 * 0.2), 1e-4);
-    voxels.edit(queue(), Bounds{Float3(-1), Float3(1)}, glassOf(1.3f, Float3(0.9f)));
+    voxels.edit(queue(), Bounds{Float3(-1), Float3(1)}, clearGlass(1.3f, Float3(0.9f)));
     EXPECT_NEAR(glassRays(queue(), voxels, camera).ends[0].transmittance[0], 0.9, 1e-5) << "the last edit holds";
 }
 
 TEST(GlassVoxels, AreNotVoxelizedAgain) {
-    const Scene scene = cube(glassOf(1.3f, Float3(0.5f)));
+    const Scene scene = cube(clearGlass(1.3f, Float3(0.5f)));
     const Camera camera = around(scene, 32);
     GlassVoxels voxels(queue(), scene, Planes{.resolution = 64});
     const auto same = glassRays(queue(), scene, camera, Planes{.resolution = 64}).ends, kept = glassRays(queue(), voxels, camera).ends;
     EXPECT_EQ(std::memcmp(same.data(), kept.data(), same.size() * sizeof(same[0])), 0);
-    voxels.edit(queue(), kHalf, glassOf(1.3f, Float3(0.2f)));
+    voxels.edit(queue(), kHalf, clearGlass(1.3f, Float3(0.2f)));
     (void)glassRays(queue(), voxels, camera);
     const Counters before = queue().counters();
-    voxels.edit(queue(), Brush{Float3(0.25f, 0, 0), 0.2f}, glassOf(1.6f));
+    voxels.edit(queue(), Brush{Float3(0.25f, 0, 0), 0.2f}, clearGlass(1.6f));
     const auto edited = glassRays(queue(), voxels, camera);
     const Counters after = queue().counters();
     EXPECT_NE(std::memcmp(edited.ends.data(), kept.data(), kept.size() * sizeof(kept[0])), 0);
@@ -128,11 +119,11 @@ TEST(GlassVoxels, AreNotVoxelizedAgain) {
 }
 
 TEST(GlassVoxels, RefuseWhatTheyCannotDo) {
-    GlassVoxels voxels(queue(), cube(glassOf(1.3f)), Exact{.resolution = 16});
+    GlassVoxels voxels(queue(), cube(clearGlass(1.3f)), Exact{.resolution = 16});
     Material opaque;
     EXPECT_THROW(voxels.edit(queue(), kHalf, opaque), Error);
-    EXPECT_THROW(voxels.edit(queue(), Brush{Float3(0), -1.0f}, glassOf(1.5f)), Error);
-    EXPECT_EQ(voxels.edit(queue(), Bounds{Float3(5), Float3(6)}, glassOf(1.5f)), 0u);
+    EXPECT_THROW(voxels.edit(queue(), Brush{Float3(0), -1.0f}, clearGlass(1.5f)), Error);
+    EXPECT_EQ(voxels.edit(queue(), Bounds{Float3(5), Float3(6)}, clearGlass(1.5f)), 0u);
     EXPECT_EQ(voxels.scene().materials.size(), 1u);
 }
 

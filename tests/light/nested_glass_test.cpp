@@ -1,28 +1,18 @@
 // Bodies of several glasses in, beside and around each other, against closed forms and the rays of the reference.
 #include <gtest/gtest.h>
-#include <vitrail/light/glass.h>
 #include <vitrail/metrics/rays.h>
 #include <vitrail/reference/glass.h>
-#include <vitrail/scene/shapes.h>
 
 #include <cmath>
 
+#include "tests/light/glass_cases.h"
 #include "tests/support/device.h"
 
 namespace vitrail {
 namespace {
 
+using test::clearGlass;
 using test::queue;
-
-Material glassOf(float index, Float3 kept = Float3(1.0f)) {
-    Material glass;
-    glass.baseColour = Float3(1.0f);
-    glass.transmission = 1.0f;
-    glass.indexOfRefraction = index;
-    glass.attenuationColour = kept;
-    glass.attenuationDistance = 1.0f;
-    return glass;
-}
 
 /// Adds a shape of the edge or diameter `size` about `centre` as a body of its own material.
 void add(Scene& scene, const char* shape, float size, Float3 centre, const Material& material) {
@@ -82,8 +72,8 @@ TEST(NestedGlass, ConcentricBallsTurnRaysByBouguer) {
     };
     for (const Case& one : {Case{1.5f, 1.2f, 0.99, 0.99, 0.98}, Case{1.3f, 1.6f, 0.99, 0.99, 0.985}, Case{1.5f, 1.0f, 0.985, 0.985, 0.98}}) {
         Scene scene;
-        add(scene, "sphere", 1.0f, Float3(0), glassOf(one.outer));
-        add(scene, "sphere", 0.6f, Float3(0), glassOf(one.inner));
+        add(scene, "sphere", 1.0f, Float3(0), clearGlass(one.outer));
+        add(scene, "sphere", 0.6f, Float3(0), clearGlass(one.inner));
         const Camera camera = frontal(1.0f, 64);
         EXPECT_GE(shareOfBouguer(scene, 0.5, 0.3, reference::glass(scene, camera), camera), one.truth) << one.inner;
         EXPECT_GE(shareOfBouguer(scene, 0.5, 0.3, glassRays(queue(), scene, camera, Exact{.resolution = 64}).ends, camera), one.exact) << one.inner;
@@ -93,9 +83,9 @@ TEST(NestedGlass, ConcentricBallsTurnRaysByBouguer) {
 
 TEST(NestedGlass, OfEqualIndicesOnlyAbsorb) {
     Scene scene, alone;
-    add(scene, "sphere", 1.0f, Float3(0), glassOf(1.4f));
+    add(scene, "sphere", 1.0f, Float3(0), clearGlass(1.4f));
     alone = scene;
-    add(scene, "sphere", 0.5f, Float3(0.1f, 0, 0), glassOf(1.4f));
+    add(scene, "sphere", 0.5f, Float3(0.1f, 0, 0), clearGlass(1.4f));
     const Camera camera = frontal(1.0f, 48);
     const auto truth = reference::glass(alone, camera), got = reference::glass(scene, camera);
     const auto voxels = glassRays(queue(), scene, camera, Exact{.resolution = 48}).ends;
@@ -113,8 +103,8 @@ TEST(NestedGlass, OfEqualIndicesOnlyAbsorb) {
 
 TEST(NestedGlass, EachBodyAbsorbsByItsOwnLaw) {
     Scene scene;
-    add(scene, "box", 1.0f, Float3(0), glassOf(1.3f, Float3(0.5f, 0.9f, 1.0f)));
-    add(scene, "box", 0.5f, Float3(0), glassOf(1.6f, Float3(1.0f, 0.3f, 0.2f)));
+    add(scene, "box", 1.0f, Float3(0), clearGlass(1.3f, Float3(0.5f, 0.9f, 1.0f)));
+    add(scene, "box", 0.5f, Float3(0), clearGlass(1.6f, Float3(1.0f, 0.3f, 0.2f)));
     const Camera camera = frontal(0.2f, 3);
     const double expected[3] = {std::pow(0.5, 0.5), std::pow(0.9, 0.5) * std::pow(0.3, 0.5), std::pow(0.2, 0.5)};
     const vitrail_RayEnd truth = reference::glass(scene, camera)[4], exact = glassRays(queue(), scene, camera, Exact{.resolution = 32}).ends[4],
@@ -134,8 +124,8 @@ TEST(NestedGlass, EachBodyAbsorbsByItsOwnLaw) {
 // No air between: three crossings, and Snell's law from one glass into the other.
 TEST(NestedGlass, BodiesThatTouchLeaveNoAir) {
     Scene scene;
-    add(scene, "box", 1.0f, Float3(0, 0, 0.5f), glassOf(1.2f, Float3(0.5f)));
-    add(scene, "box", 1.0f, Float3(0, 0, -0.5f), glassOf(1.7f, Float3(0.3f)));
+    add(scene, "box", 1.0f, Float3(0, 0, 0.5f), clearGlass(1.2f, Float3(0.5f)));
+    add(scene, "box", 1.0f, Float3(0, 0, -0.5f), clearGlass(1.7f, Float3(0.3f)));
     for (const double degrees : {0.0, 15.0}) {
         const double sine = std::sin(degrees * M_PI / 180), cosA = std::sqrt(1 - std::pow(sine / 1.2, 2)), cosB = std::sqrt(1 - std::pow(sine / 1.7, 2));
         Camera camera = frontal(0.1f, 3);
@@ -158,8 +148,8 @@ TEST(NestedGlass, BodiesThatTouchLeaveNoAir) {
 // A bubble is a body of air, or a surface of the glass around it that winds the other way.
 TEST(NestedGlass, AirInGlassIsABodyOrAHollow) {
     Scene body, hollow;
-    for (Scene* scene : {&body, &hollow}) add(*scene, "sphere", 1.0f, Float3(0), glassOf(1.5f));
-    add(body, "sphere", 0.5f, Float3(0.1f, 0.05f, 0), glassOf(1.0f));
+    for (Scene* scene : {&body, &hollow}) add(*scene, "sphere", 1.0f, Float3(0), clearGlass(1.5f));
+    add(body, "sphere", 0.5f, Float3(0.1f, 0.05f, 0), clearGlass(1.0f));
     hollow.mesh = body.mesh;
     hollow.mesh.materials.clear();
     for (std::size_t t = 0; t < body.mesh.triangleCount(); ++t)
@@ -177,8 +167,8 @@ TEST(NestedGlass, AirInGlassIsABodyOrAHollow) {
 // Fig. 11 of Chang et al. 2013: something coloured in a ball of glass. Rates at 128 voxels, a hundredth below what was measured.
 TEST(NestedGlass, IsWhereTheReferenceHasIt) {
     Scene scene;
-    add(scene, "sphere", 1.0f, Float3(0), glassOf(1.14f));
-    add(scene, "torus", 0.45f, Float3(0.05f, 0, 0), glassOf(1.5f, Float3(0.1f, 0.5f, 0.02f)));
+    add(scene, "sphere", 1.0f, Float3(0), clearGlass(1.14f));
+    add(scene, "torus", 0.45f, Float3(0.05f, 0, 0), clearGlass(1.5f, Float3(0.1f, 0.5f, 0.02f)));
     const RayErrors exact = errorsOf(scene, Exact{.resolution = 128}), planes = errorsOf(scene, Planes{.resolution = 128});
     EXPECT_GE(exact.correct, 0.99);
     EXPECT_GE(planes.correct, 0.98);
@@ -187,8 +177,8 @@ TEST(NestedGlass, IsWhereTheReferenceHasIt) {
 
 TEST(NestedGlass, ACameraMayStandInside) {
     Scene scene;
-    add(scene, "sphere", 1.0f, Float3(0), glassOf(1.5f, Float3(0.5f)));
-    add(scene, "sphere", 0.4f, Float3(0), glassOf(1.2f, Float3(0.2f)));
+    add(scene, "sphere", 1.0f, Float3(0), clearGlass(1.5f, Float3(0.5f)));
+    add(scene, "sphere", 0.4f, Float3(0), clearGlass(1.2f, Float3(0.2f)));
     for (const float z : {0.05f, 0.35f}) {
         Camera camera;
         camera.eye = Float3(0, 0, z);
@@ -207,8 +197,8 @@ TEST(NestedGlass, ACameraMayStandInside) {
 
 TEST(NestedGlass, OpenMeshesAreReportedAndHoldNoRay) {
     Scene scene;
-    add(scene, "sphere", 1.0f, Float3(0), glassOf(1.3f));
-    add(scene, "sphere", 0.5f, Float3(0), glassOf(1.6f));
+    add(scene, "sphere", 1.0f, Float3(0), clearGlass(1.3f));
+    add(scene, "sphere", 0.5f, Float3(0), clearGlass(1.6f));
     // Every third triangle of both is missing.
     Mesh& mesh = scene.mesh;
     std::vector<std::uint32_t> indices, materials;
