@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "light/ends.h"
 #include "light/march.h"
 #include "light/surroundings.h"
 
@@ -18,6 +19,9 @@ void check(const Caustics& effect) {
     };
     if (effect.photons < 16 || effect.photons > 8192) refuse("photons", effect.photons, "photons from 16 to 8192");
     if (effect.texels < 16 || effect.texels > 4096) refuse("texels", effect.texels, "texels from 16 to 4096");
+    if (detail::tracesEnds(effect.method))
+        throw Error(ErrorCode::badOption, {"caustics: " + std::string(detail::nameOf(effect.method)) + " does not march through voxels", "", "",
+                                           "planes, exact or plane"});
     if (!effect.ground.visible) throw Error(ErrorCode::badOption, {"caustics: there is no ground to land on", "", "", "ground.visible"});
 }
 

@@ -215,6 +215,7 @@ TEST(Caustics, AreShownOnTheGround) {
 
 TEST(Caustics, RefusesWhatItCannotDo) {
     Scene scene = sceneOf(makeShape("box"), 1.5f);
+    EXPECT_THROW(caustics(queue(), scene, {.method = Two{}}), Error);
     EXPECT_THROW(caustics(queue(), scene, {.photons = 8}), Error);
     EXPECT_THROW(caustics(queue(), scene, {.texels = 8}), Error);
     EXPECT_THROW(caustics(queue(), scene, {.ground = {.visible = false}}), Error);

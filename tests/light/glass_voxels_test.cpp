@@ -119,6 +119,7 @@ TEST(GlassVoxels, AreNotVoxelizedAgain) {
 }
 
 TEST(GlassVoxels, RefuseWhatTheyCannotDo) {
+    EXPECT_THROW(GlassVoxels(queue(), cube(clearGlass(1.3f)), Two{}), Error);
     GlassVoxels voxels(queue(), cube(clearGlass(1.3f)), Exact{.resolution = 16});
     Material opaque;
     EXPECT_THROW(voxels.edit(queue(), kHalf, opaque), Error);

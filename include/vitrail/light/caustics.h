@@ -23,7 +23,7 @@ struct PhotonCounts {
 inline constexpr std::uint64_t kPhotonParts = 1u << 20;
 
 struct Caustics {
-    GlassMethod method{};
+    GlassMethod method{};          ///< Planes, Exact or Plane
     Ground ground{};               ///< must be visible
     std::uint32_t photons = 1024;  ///< along each side of the square window in which the light sees the scene, 16 to 8192
     std::uint32_t texels = 512;    ///< along each side of the map, 16 to 4096

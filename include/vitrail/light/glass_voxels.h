@@ -27,7 +27,8 @@ struct GlassVoxelsState;
 /// Move-only. One thread at a time, with the queue it was made with.
 class GlassVoxels {
 public:
-    /// Voxelizes `scene` once, for `method`, and keeps a copy of the scene. Throws Error as shade(queue, scene, camera, Glass).
+    /// Voxelizes `scene` once, for `method` (Planes, Exact or Plane), and keeps a copy of the scene. Throws Error as shade(queue, scene, camera,
+    /// Glass).
     GlassVoxels(Queue& queue, Scene scene, const GlassMethod& method);
     GlassVoxels(GlassVoxels&&) noexcept;
     GlassVoxels& operator=(GlassVoxels&&) noexcept;
