@@ -24,6 +24,9 @@
 #include <vitrail/scene/shapes.h>
 #include <vitrail/voxelize/voxelize.h>
 
+#include "tests/support/data.h"
+#include "tests/support/plain_files.h"
+
 namespace {
 
 using namespace vitrail;
@@ -160,6 +163,38 @@ void meshes(Queue& queue) {
     }
 }
 
+/// By differences: the clear from a mesh of one triangle, vertices, factors and one point a triangle from a safety factor of 0.25.
+void stages(Queue& queue) {
+    std::puts("| mesh | grid | ms | clear, % | vertices and factors, % | points, % |\n|---|---|---|---|---|---|");
+    const std::optional<Input> input = file("dragon_vrip_res2.ply");
+    if (!input) return;
+    const DeviceMesh mesh(queue, input->mesh);
+    Mesh one = input->mesh;
+    one.indices.resize(3);
+    const DeviceMesh single(queue, one);
+    for (const unsigned resolution : {128u, 256u, 512u, 1024u}) {
+        const Grid grid = Grid::fit(mesh.bounds(), resolution);
+        const double all = timeOf(queue, mesh, grid, Points{}), clear = timeOf(queue, single, grid, Points{}),
+                     read = timeOf(queue, mesh, grid, Points{.safetyFactor = 0.25f}) - clear;
+        std::printf("| %s | %u | %.2f | %.0f | %.0f | %.0f |\n", input->name.c_str(), resolution, all, 100 * clear / all, 100 * read / all,
+                    100 * (all - clear - read) / all);
+    }
+}
+
+/// Points mark no cell that Conservative does not, so what is missing of it is the difference of their counts.
+void sibenik(Queue& queue) {
+    std::puts("| mesh | triangles | grid | `points`, ms | voxels | `conservative`, ms | voxels | missing of it, % |\n|---|---|---|---|---|---|---|---|");
+    const std::filesystem::path path = test::dataFile("meshes/sibenik/sibenik.bin");
+    if (path.empty()) return;
+    const Mesh cathedral = test::readPlain(path);
+    const DeviceMesh mesh(queue, cathedral);
+    const Grid grid = Grid::fit(mesh.bounds(), 1792);
+    const std::uint64_t marked = voxelize(queue, mesh, grid, Points{}).occupied(), touched = voxelize(queue, mesh, grid, Conservative{}).occupied();
+    std::printf("| sibenik | %u | 1792 | %.1f | %llu | %.1f | %llu | %.2f |\n", mesh.triangleCount(), timeOf(queue, mesh, grid, Points{}),
+                static_cast<unsigned long long>(marked), timeOf(queue, mesh, grid, Conservative{}), static_cast<unsigned long long>(touched),
+                100.0 * static_cast<double>(touched - marked) / static_cast<double>(touched));
+}
+
 void bias(Queue& queue) {
     std::puts("| mesh | grid | frames | least, % | mean, % | most, % |\n|---|---|---|---|---|---|");
     const std::optional<Input> input = file("bun_zipper.ply");
@@ -258,7 +293,7 @@ void factors(Queue& queue) {
 using Table = void (*)(Queue&);
 constexpr std::pair<const char*, Table> kTables[] = {{"placements", placements}, {"patches", patches}, {"safety", safety}, {"simple", simple},
                                                      {"meshes", meshes},         {"bias", bias},       {"watertight", watertight},
-                                                     {"factors", factors}};
+                                                     {"factors", factors},       {"stages", stages},   {"sibenik", sibenik}};
 
 }  // namespace
 
@@ -268,7 +303,7 @@ int main(int argc, char** argv) {
         Queue queue(device);
         for (int i = 1; i < argc; ++i)
             if (std::ranges::none_of(kTables, [&](const auto& table) { return std::string(argv[i]) == table.first; })) {
-                std::fprintf(stderr, "bench_points: there is no table \"%s\"; placements, patches, safety, simple, meshes, bias, watertight, factors\n", argv[i]);
+                std::fprintf(stderr, "bench_points: there is no table \"%s\"; placements, patches, safety, simple, meshes, bias, watertight, factors, stages, sibenik\n", argv[i]);
                 return 2;
             }
         for (const auto& [name, table] : kTables)
