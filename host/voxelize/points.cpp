@@ -1,11 +1,13 @@
+#include <vitrail/core/error.h>
 #include <vitrail/voxelize/points.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <vector>
 
-#include <vitrail/core/error.h>
-
+#include "scene/weld.h"
 #include "voxelize/prepare.h"
 
 namespace vitrail {
@@ -18,14 +20,14 @@ constexpr std::uint64_t kPatterns = 6 * 6 * 6 * 2, kWords = kPatterns * 2 * 56 *
 
 /// Made once a queue and precision.
 const Buffer<std::uint32_t>& table(detail::Call& call, const detail::Program& program) {
-    return call.kept("points_table " + program.options, kWords, [&](Buffer<std::uint32_t>& words) {
-        call.launch(program, "points_table", kPatterns, 1, words);
-    });
+    return call.kept("points_table " + program.options, kWords,
+                     [&](Buffer<std::uint32_t>& words) { call.launch(program, "points_table", kPatterns, 1, words); });
 }
 
 Voxels voxelizePatches(Queue& queue, const DeviceMesh& mesh, const Grid& grid, const Points& method) {
     if (!mesh.normals())
-        throw Error(ErrorCode::badInput, {"points: PN triangles want vertex normals, and the mesh has none", "", "", "withSmoothNormals(mesh)"});
+        throw Error(ErrorCode::badInput,
+                    {"points: PN triangles want vertex normals, and the mesh has none", "", "", "withSmoothNormals(mesh)"});
     return detail::runVoxelizer(queue, mesh, grid, method.channels, Points::name.data(), detail::checkOptions(method),
                                 [&](detail::Pass& pass, const detail::MarkChannels* channels) {
                                     const detail::Program curved{"voxelize/curved_points", pass.program.options};
@@ -39,14 +41,16 @@ Voxels voxelizePatches(Queue& queue, const DeviceMesh& mesh, const Grid& grid, c
 Voxels voxelize(Queue& queue, const MeshInput& mesh, const Grid& grid, const Points& method) {
     if (method.surface == Points::Surface::pnTriangles) {
         if (grid.desc().kind == VITRAIL_GRID_PERSPECTIVE)
-            throw Error(ErrorCode::unsupported, {"points on PN triangles works on box and orthographic grids; this one is perspective", "", "",
-                                                 "triangles instead, subdivided"});
+            throw Error(ErrorCode::unsupported,
+                        {"points on PN triangles works on box and orthographic grids; this one is perspective", "", "",
+                         "triangles instead, subdivided"});
         return mesh.device() != nullptr ? voxelizePatches(queue, *mesh.device(), grid, method)
                                         : voxelizePatches(queue, DeviceMesh(queue, mesh.view()), grid, method);
     }
     return detail::runVoxelizer(queue, mesh, grid, method.channels, Points::name.data(), detail::checkOptions(method),
                                 [&](detail::Pass& pass, const detail::MarkChannels* channels) {
-                                    detail::launchMark(pass, "points", channels, method.safetyFactor, table(pass.call, pass.program));
+                                    detail::launchMark(pass, "points", channels, method.safetyFactor,
+                                                       table(pass.call, pass.program));
                                 });
 }
 
@@ -56,40 +60,143 @@ std::uint64_t estimate(const MeshInput& mesh, const Grid& grid, const Points& me
            (patches ? (mesh.device() != nullptr ? 0 : mesh.view().normals.count * 12) : kWords * sizeof(std::uint32_t));
 }
 
+namespace {
+
+/// What points miss of a mesh at safety factors of 1 to 8.
+class Missing {
+public:
+    Missing(const MeshView& mesh, const Grid& grid) {
+        const detail::Welded welded = detail::weld(mesh.positions);
+        std::vector<Edge> edges;
+        edges.reserve(mesh.triangleCount() * 3);
+        double area = 0;
+        for (std::uint64_t t = 0; t < mesh.triangleCount(); ++t) {
+            std::array<Double3, 3> corner;
+            std::array<std::uint32_t, 3> id{};
+            bool good = true;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::uint32_t vertex = mesh.index(3 * t + k);
+                good = good && vertex < mesh.positions.count;
+                if (!good) break;
+                corner[k] = grid.toVoxel(mesh.positions[vertex]);
+                id[k] = welded.id[vertex];
+            }
+            if (!good) continue;
+            const Double3 normal = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
+            const double twice = glm::length(normal);
+            if (!std::isfinite(twice)) continue;
+            for (std::size_t e = 0; e < 3; ++e) {
+                const std::size_t next = (e + 1) % 3;
+                const double length = glm::length(corner[next] - corner[e]);
+                length_ += length;
+                ++edges_;
+                if (twice > 0) edges.push_back({std::min(id[e], id[next]), std::max(id[e], id[next]), length, normal / twice});
+            }
+            if (!(twice > 0)) continue;
+            area += twice / 2;
+            addFacet(corner, normal / twice, twice / 2);
+        }
+        if (area > 0) bend_ = bendOf(edges) / area;
+    }
+
+    /// Cells on the mean.
+    double edge() const { return edges_ == 0 ? 0 : length_ / double(edges_); }
+
+    /// The share at kFactors[i].
+    double share(std::size_t i) const {
+        return cells_ > 0 ? kMost * (1 + kBend * std::clamp(bend_ - kThick, 0.0, kThin - kThick)) * missed_[i] / cells_ : 0;
+    }
+
+    static constexpr std::array<double, 7> kFactors{1, 1.41421356, 2, 2.82842712, 4, 5.65685425, 8};
+
+private:
+    struct Edge {
+        std::uint32_t low, high;
+        double length;
+        Double3 normal;
+    };
+
+    /// Fitted to the table `factors` of bench_points: bodies of a bend to kThick a cell are as planes are, more is missing of
+    /// thinner parts.
+    static constexpr double kMost = 1.5, kBend = 0.25, kThick = 1.25, kThin = 4.5;
+
+    /// A plane with |normal| = (a, b, c), a >= b >= c, meets a + b + c cells a unit of area. At depth d from a corner of a cell
+    /// its section of the cell is d^2 / (2abc) large to d = c and (2d - c) / (2ab) from there, and taken to be missed in the
+    /// share 1 - points on it.
+    void addFacet(const std::array<Double3, 3>& corner, const Double3& normal, double area) {
+        std::array<double, 3> sorted{std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)};
+        std::sort(sorted.begin(), sorted.end());
+        const auto [c, b, a] = sorted;
+        cells_ += area * (a + b + c);
+        std::array<double, 3> span;
+        for (std::size_t e = 0; e < 3; ++e) {
+            const Double3 d = glm::abs(corner[(e + 1) % 3] - corner[e]);
+            span[e] = std::max({d.x, d.y, d.z});
+        }
+        for (std::size_t i = 0; i < kFactors.size(); ++i) {
+            const double q = 2 * a * b * area / pointsOf(span, kFactors[i]);
+            const double depth = q <= c ? 2 * std::sqrt(q * c) / 3 : c - c * c / (3 * q) + (q - c) * (q - c) / (4 * q);
+            missed_[i] += area * std::min(2 * depth, a + b + c);
+        }
+    }
+
+    /// As points_factor, points_inside and points_count of kernels/lib/points.cl.
+    static double pointsOf(const std::array<double, 3>& span, double factor) {
+        const double most = std::max({span[0], span[1], span[2]}) * factor;
+        if (most <= 1) return 1;
+        double part = 1, edges = 0, sum = 0;
+        while (1.15 * most * part > 64) part /= 2;
+        for (const double cells : span) {
+            sum += 1.15 * cells * factor * part;
+            edges += std::max(1.0, std::ceil(1.15 * cells * factor * part));
+        }
+        const double m = std::max(2.0, std::ceil(sum / 3)) - 2;
+        return (edges + 3 * m + std::floor(1.5 * m * m)) / (part * part);
+    }
+
+    /// The sum over edges of length times turn; of an edge of one triangle, or of more than two, half a turn.
+    static double bendOf(std::vector<Edge>& edges) {
+        const auto key = [](const Edge& edge) { return std::pair(edge.low, edge.high); };
+        std::stable_sort(edges.begin(), edges.end(), [&](const Edge& a, const Edge& b) { return key(a) < key(b); });
+        double sum = 0;
+        for (std::size_t i = 0, end; i < edges.size(); i = end) {
+            for (end = i + 1; end < edges.size() && key(edges[end]) == key(edges[i]);) ++end;
+            const double turn = end - i == 2 ? std::acos(std::clamp(glm::dot(edges[i].normal, edges[i + 1].normal), -1.0, 1.0))
+                                             : 3.14159265358979;
+            sum += edges[i].length * turn;
+        }
+        return sum;
+    }
+
+    std::array<double, kFactors.size()> missed_{};
+    double cells_ = 0, length_ = 0, bend_ = 0;
+    std::uint64_t edges_ = 0;
+};
+
+}  // namespace
+
 float safetyFactorFor(double missing, const MeshView& mesh, const Grid& grid) {
-    constexpr double kShare = 0.33;  // above all of the table `factors` of bench_points
     const auto refuse = [&](const std::string& what, const std::string& remedy) {
         throw Error(ErrorCode::unsupported, {"safetyFactorFor: " + what, "grid: " + grid.text(), "", remedy});
     };
-    const double factor = kShare / missing;
-    if (!(factor > 1 && factor <= 8)) {
-        char text[160];
-        std::snprintf(text, sizeof text, "a share of %g is beyond what safety factors from 1 to 8 leave missing, %g to %g", missing, kShare / 8,
-                      kShare);
-        refuse(text, factor > 8 ? "conservative, which misses nothing" : "points as it is, at safetyFactor 1");
-    }
-    double sum = 0;
-    std::uint64_t edges = 0;
-    for (std::uint64_t t = 0; t < mesh.triangleCount(); ++t) {
-        std::array<Double3, 3> corner;
-        bool good = true;
-        for (int k = 0; k < 3; ++k) {
-            const std::uint64_t vertex = mesh.indices.empty() ? 3 * t + std::uint64_t(k) : mesh.indices[3 * t + std::uint64_t(k)];
-            good = good && vertex < mesh.positions.count;
-            if (good) corner[std::size_t(k)] = grid.toVoxel(mesh.positions[vertex]);
-        }
-        for (std::size_t e = 0; good && e < 3; ++e)
-            if (const double length = glm::length(corner[(e + 1) % 3] - corner[e]); std::isfinite(length)) {
-                sum += length;
-                ++edges;
-            }
-    }
-    if (edges == 0 || sum <= double(edges)) {
-        char text[96];
-        std::snprintf(text, sizeof text, "edges of %.3g cells on the mean, where the law holds from 1 cell on", edges == 0 ? 0.0 : sum / double(edges));
+    const Missing law(mesh, grid);
+    char text[160];
+    if (!(law.edge() > 1)) {
+        std::snprintf(text, sizeof text, "edges of %.3g cells on the mean, where the law holds from 1 cell on", law.edge());
         refuse(text, "safetyFactor 1, or conservative, which costs little more here");
     }
-    return static_cast<float>(factor);
+    constexpr auto& kFactors = Missing::kFactors;
+    if (!(missing < law.share(0) && missing >= law.share(kFactors.size() - 1))) {
+        std::snprintf(text, sizeof text,
+                      "a share of %g is beyond what safety factors from 1 to 8 leave missing here, %.3g to %.3g", missing,
+                      law.share(kFactors.size() - 1), law.share(0));
+        refuse(text, missing >= law.share(0) ? "points as it is, at safetyFactor 1" : "conservative, which misses nothing");
+    }
+    std::size_t i = kFactors.size() - 2;
+    while (i > 0 && law.share(i) <= missing) --i;
+    // Between two factors the share falls as a power.
+    const double high = std::log(law.share(i)), low = std::log(law.share(i + 1));
+    return static_cast<float>(kFactors[i] * std::pow(kFactors[i + 1] / kFactors[i], (high - std::log(missing)) / (high - low)));
 }
 
 }  // namespace v0

@@ -76,8 +76,8 @@ Counts expectedCounts(const Mesh& mesh, const Grid& grid, double safetyFactor) {
     return counts;
 }
 
-// The device enumerates what the pattern has, voxel by voxel: triangles below a cell, also with many points in it, of few cells, above 64 cells (halved),
-// partly outside.
+// The device enumerates what the pattern has, voxel by voxel: triangles below a cell, also with many points in it, of few cells,
+// above 64 cells (halved), partly outside.
 TEST(Points, AreTheCentroidsOfTheTessellation) {
     const Uint3 size(40, 33, 70);
     const Grid box = Grid::box(Float3(0), 1.0f, size), ortho = test::cameraGrids({Float3(0), Float3(size)}, size)[0];
@@ -85,8 +85,8 @@ TEST(Points, AreTheCentroidsOfTheTessellation) {
         unsigned triangles;
         float reach, safetyFactor;
     };
-    for (const Run& run : {Run{300, 0.7f, 1}, Run{300, 0.7f, 6}, Run{300, 3, 1}, Run{100, 20, 1}, Run{100, 5, 2.5f}, Run{60, 12, 0.3f},
-                           Run{6, 150, 1}, Run{3, 40, 8}})
+    for (const Run& run : {Run{300, 0.7f, 1}, Run{300, 0.7f, 6}, Run{300, 3, 1}, Run{100, 20, 1}, Run{100, 5, 2.5f},
+                           Run{60, 12, 0.3f}, Run{6, 150, 1}, Run{3, 40, 8}})
         for (const Grid& grid : {box, ortho}) {
             const Mesh mesh = test::soup(run.triangles + 7, run.triangles, size, run.reach);
             const Voxels got =
@@ -192,43 +192,32 @@ TEST(Points, MissLittleOfScans) {
     }
 }
 
-// The share that is asked for is kept; on compact bodies (0.14 to 0.21 over the factor, of 0.33) more than two fifths of it is missing.
+// The share that is asked for is kept, and more than two thirds of it is missing: at all but one in twenty, and there by less
+// than a tenth.
 TEST(Points, MissTheShareThatTheirSafetyFactorIsFor) {
-    const Mesh sphere = test::closedSphere(Float3(0), 5, Float3(0.4f, 1, 2), 32, 16),
-               torus = test::closedTorus(Float3(0), 5, 2, Float3(0.3f, 1.1f, 2), 40, 20);
-    for (const Mesh* mesh : {&sphere, &torus})
-        for (const unsigned longest : {48u, 96u})
-            for (const double missing : {0.25, 0.15, 0.08, 0.05}) {
-                const Grid grid = Grid::fit(mesh->bounds(), longest);
-                const Points method{.safetyFactor = safetyFactorFor(missing, *mesh, grid)};
-                const reference::Truth truth = reference::conservative(*mesh, grid);
-                const double share = compareVoxels(voxelize(queue(), *mesh, grid, method).host(), truth.certain, truth.possible).missingShare();
-                EXPECT_LE(share, missing) << longest;
-                EXPECT_GE(share, missing / 2.5) << longest;
-            }
-}
-
-// On every generated shape, parts thinner than a cell among them, which come nearest.
-TEST(Points, MissNoMoreThanTheShareThatTheirSafetyFactorIsForOnAnyShape) {
-    double worst = 0;
+    unsigned asked = 0, outside = 0;
     for (const test::Case& one : test::smallShapes())
-        for (const unsigned longest : {32u, 64u, 128u}) {
+        for (const unsigned longest : {48u, 64u, 96u}) {
             const Grid grid = Grid::fit(one.mesh.bounds(), longest);
             const reference::Truth truth = reference::conservative(one.mesh, grid);
-            for (const double missing : {0.28, 0.12, 0.05}) {
+            for (const double missing : {0.2, 0.12, 0.06, 0.04}) {
                 Points method;
                 try {
                     method.safetyFactor = safetyFactorFor(missing, one.mesh, grid);
                 } catch (const Error& error) {
                     EXPECT_EQ(error.code(), ErrorCode::unsupported);
-                    continue;  // edges below a cell
+                    continue;  // edges below a cell, or a factor outside (1, 8]
                 }
-                const double share = compareVoxels(voxelize(queue(), one.mesh, grid, method).host(), truth.certain, truth.possible).missingShare();
-                EXPECT_LE(share, missing) << one.name << " " << longest;
-                worst = std::max(worst, share / missing);
+                const double share =
+                    compareVoxels(voxelize(queue(), one.mesh, grid, method).host(), truth.certain, truth.possible).missingShare();
+                EXPECT_LE(share, missing * 1.1) << one.name << " " << longest;
+                EXPECT_GE(share, missing / 1.5 * 0.9) << one.name << " " << longest;
+                outside += share > missing || share < missing / 1.5;
+                ++asked;
             }
         }
-    EXPECT_GT(worst, 0.67);  // else the law asks for more points than it has to
+    EXPECT_GE(asked, 70u);
+    EXPECT_LE(10 * outside, asked) << outside << " of " << asked;
 }
 
 TEST(Points, NoSafetyFactorIsGivenWhereTheLawIsNotKnownToHold) {
@@ -260,12 +249,13 @@ Mesh patchesOf(const Mesh& mesh, int parts) {
             n[k] = glm::normalize(Double3(mesh.normals[mesh.indices[3 * t + k]]));
         }
         const auto edge = [&](int i, int j) { return (p[i] * 2.0 + p[j] - n[i] * glm::dot(p[j] - p[i], n[i])) / 3.0; };
-        const Double3 e = (edge(0, 1) + edge(1, 0) + edge(1, 2) + edge(2, 1) + edge(2, 0) + edge(0, 2)) / 6.0, v = (p[0] + p[1] + p[2]) / 3.0;
+        const Double3 e = (edge(0, 1) + edge(1, 0) + edge(1, 2) + edge(2, 1) + edge(2, 0) + edge(0, 2)) / 6.0,
+                      v = (p[0] + p[1] + p[2]) / 3.0;
         const auto at = [&](int i, int j) {
             const double a = double(i) / parts, b = double(j) / parts, c = 1 - a - b;
             return Float3(p[0] * (c * c * c) + p[1] * (a * a * a) + p[2] * (b * b * b) +
-                          3.0 * (edge(0, 1) * (c * c * a) + edge(1, 0) * (c * a * a) + edge(1, 2) * (a * a * b) + edge(2, 1) * (a * b * b) +
-                                 edge(2, 0) * (b * b * c) + edge(0, 2) * (b * c * c)) +
+                          3.0 * (edge(0, 1) * (c * c * a) + edge(1, 0) * (c * a * a) + edge(1, 2) * (a * a * b) +
+                                 edge(2, 1) * (a * b * b) + edge(2, 0) * (b * b * c) + edge(0, 2) * (b * c * c)) +
                           (e * 1.5 - v * 0.5) * (6 * a * b * c));
         };
         for (int i = 0; i < parts; ++i)
@@ -277,8 +267,8 @@ Mesh patchesOf(const Mesh& mesh, int parts) {
     return fine;
 }
 
-// Facets of 0.37 cell on a radius of 24 cells, and of 0.2 cell on one of 7, lie within 0.37^2 / (8 * 24) = 0.0007 cell of the patches: about
-// six times that share of the voxels may differ by it.
+// Facets of 0.37 cell on a radius of 24 cells, and of 0.2 cell on one of 7, lie within 0.37^2 / (8 * 24) = 0.0007 cell of the
+// patches: about six times that share of the voxels may differ by it.
 TEST(Points, OnPnTrianglesFollowTheCurvedSurface) {
     const Mesh sphere = withSmoothNormals(test::closedSphere(Float3(0), 5, Float3(0.4f, 1, 2), 10, 5)),
                torus = withSmoothNormals(test::closedTorus(Float3(0), 5, 2, Float3(0.3f, 1.1f, 2), 12, 6));
@@ -287,8 +277,9 @@ TEST(Points, OnPnTrianglesFollowTheCurvedSurface) {
         const Grid grid = Grid::fit(fine.bounds(), 48);
         const reference::Truth touched = reference::conservative(fine, grid), thin = reference::thin(fine, grid);
         for (const float gamma : {1.0f, 7.0f}) {
-            const Voxels got = voxelize(queue(), *mesh, grid,
-                                        Points{.safetyFactor = gamma, .channels = Channel::normal, .surface = Points::Surface::pnTriangles});
+            const Voxels got =
+                voxelize(queue(), *mesh, grid,
+                         Points{.safetyFactor = gamma, .channels = Channel::normal, .surface = Points::Surface::pnTriangles});
             const VoxelDifference difference = compareVoxels(got.host(), touched.certain, touched.possible);
             EXPECT_LE(difference.extraShare(), 0.0045) << gamma;
             EXPECT_LE(difference.missingShare(), 0.21 / gamma) << gamma;
@@ -317,16 +308,19 @@ TEST(Points, OnFlatPnTrianglesAreThoseOfTheTriangles) {
                 const Double3 a(mesh.positions[corner[0]]), b(mesh.positions[corner[1]]), c(mesh.positions[corner[2]]);
                 for (int k = 0; k < 3; ++k) mesh.normals[corner[k]] = Float3(glm::normalize(glm::cross(b - a, c - a)));
             }
-            // The normals' rounding bends edges by 2^-25 of their length, which no more than a point in a hundred thousand notices.
+            // The normals' rounding bends edges by 2^-25 of their length, which no more than a point in a hundred thousand
+            // notices.
             const Voxels flat = voxelize(queue(), mesh, grid, Points{}),
                          curved = voxelize(queue(), mesh, grid, Points{.surface = Points::Surface::pnTriangles});
-            EXPECT_LE(compareVoxels(curved.host(), flat.host()).missing + compareVoxels(curved.host(), flat.host()).extra, 1u) << reach;
+            EXPECT_LE(compareVoxels(curved.host(), flat.host()).missing + compareVoxels(curved.host(), flat.host()).extra, 1u)
+                << reach;
         }
 }
 
 TEST(Points, RefusePnTrianglesWithoutNormals) {
     const Mesh sphere = test::closedSphere(Float3(0), 5, Float3(0), 8, 4);
-    EXPECT_THROW((void)voxelize(queue(), sphere, Grid::fit(sphere.bounds(), 8), Points{.surface = Points::Surface::pnTriangles}), Error);
+    EXPECT_THROW((void)voxelize(queue(), sphere, Grid::fit(sphere.bounds(), 8), Points{.surface = Points::Surface::pnTriangles}),
+                 Error);
 }
 
 TEST(Points, SkipWhatIsTooLargeAndCountIt) {
