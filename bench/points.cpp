@@ -1,20 +1,10 @@
-// bench/points.cpp: the tables of Fei, Wang & Chen 2012 on this machine, as Markdown: bench_points TABLE..., all of them without
-// one.
+// bench/points.cpp: the tables of Fei, Wang & Chen 2012 on this machine, as Markdown: bench_points TABLE..., all of them without one.
 //   placements  Fig. 2: where in a micro-triangle the point is        patches   Fig. 4: PN triangles against the triangles
-//   safety      Fig. 5: time and bias along gamma, and untessellated   simple    Fig. 8: few triangles on fine grids; points
-//   against eq. 5 meshes      Fig. 10: time and bias on scans                        bias      bias while a mesh moves watertight
-//   the least gamma, of steps of 1/4, from which a closed mesh holds factors     what safetyFactorFor gives for shares of
-//   conservative, and what is missing then
-// Bias: share of the conservative truth that is missing. Times: kernels, medians of five. Meshes where VITRAIL_DATA names a
-// folder of them.
-#include <vitrail/core/error.h>
-#include <vitrail/io/load.h>
-#include <vitrail/metrics/voxels.h>
-#include <vitrail/metrics/watertight.h>
-#include <vitrail/reference/truth.h>
-#include <vitrail/scene/shapes.h>
-#include <vitrail/voxelize/voxelize.h>
-
+//   safety      Fig. 5: time and bias along gamma, and untessellated   simple    Fig. 8: few triangles on fine grids; points against eq. 5
+//   meshes      Fig. 10: time and bias on scans                        bias      bias while a mesh moves
+//   watertight  the least gamma, of steps of 1/4, from which a closed mesh holds
+//   factors     what safetyFactorFor gives for shares of conservative, and what is missing then
+// Bias: share of the conservative truth that is missing. Times: kernels, medians of five. Meshes where VITRAIL_DATA names a folder of them.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,6 +15,14 @@
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <vitrail/core/error.h>
+#include <vitrail/io/load.h>
+#include <vitrail/metrics/voxels.h>
+#include <vitrail/metrics/watertight.h>
+#include <vitrail/reference/truth.h>
+#include <vitrail/scene/shapes.h>
+#include <vitrail/voxelize/voxelize.h>
 
 namespace {
 
@@ -72,8 +70,8 @@ void placements(Queue& queue) {
         const reference::Truth touched = reference::conservative(input->mesh, grid), thin = reference::thin(input->mesh, grid);
         const auto row = [&](const char* where, const Voxelizer& method) {
             const Voxels voxels = voxelize(queue, mesh, grid, method);
-            std::printf("| %s | 256 | %s | %.2f | %.2f | %.3f |\n", input->name.c_str(), where, timeOf(queue, mesh, grid, method),
-                        missing(voxels, touched), missing(voxels, thin));
+            std::printf("| %s | 256 | %s | %.2f | %.2f | %.3f |\n", input->name.c_str(), where, timeOf(queue, mesh, grid, method), missing(voxels, touched),
+                        missing(voxels, thin));
         };
         using Placement = PlacedPoints::Placement;
         row("centroids (`points`)", Points{});
@@ -96,8 +94,7 @@ void safety(Queue& queue) {
             const Voxels voxels = voxelize(queue, mesh, grid, Points{.safetyFactor = gamma});
             std::printf("| %s | 256 | %g | %.2f | %llu | %.2f | %.3f |\n", input->name.c_str(), double(gamma),
                         timeOf(queue, mesh, grid, Points{.safetyFactor = gamma}),
-                        static_cast<unsigned long long>(pointsOf(queue, mesh, grid, gamma)), missing(voxels, touched),
-                        missing(voxels, thin));
+                        static_cast<unsigned long long>(pointsOf(queue, mesh, grid, gamma)), missing(voxels, touched), missing(voxels, thin));
         }
     }
 }
@@ -111,17 +108,15 @@ void patches(Queue& queue) {
     const Grid grid = Grid::fit(mesh.bounds(), 256);
     for (const bool curved : {false, true}) {
         const Points method{.surface = curved ? Points::Surface::pnTriangles : Points::Surface::triangles};
-        std::printf("| %s | %u | %s | 256 | %.2f | %llu |\n", input->name.c_str(), mesh.triangleCount(),
-                    curved ? "PN triangles" : "triangles", timeOf(queue, mesh, grid, method),
-                    static_cast<unsigned long long>(voxelize(queue, mesh, grid, method).occupied()));
+        std::printf("| %s | %u | %s | 256 | %.2f | %llu |\n", input->name.c_str(), mesh.triangleCount(), curved ? "PN triangles" : "triangles",
+                    timeOf(queue, mesh, grid, method), static_cast<unsigned long long>(voxelize(queue, mesh, grid, method).occupied()));
     }
 }
 
 /// Of eq. 4 and 5, with N63 = 5953, the triangles of a uniform factor of 63.
 void simple(Queue& queue) {
-    std::puts(
-        "| mesh | triangles | grid | ms | missing of conservative, % | points | of them by eq. 5 | passes by eq. 4 | halvings |\n"
-        "|---|---|---|---|---|---|---|---|---|");
+    std::puts("| mesh | triangles | grid | ms | missing of conservative, % | points | of them by eq. 5 | passes by eq. 4 | halvings |\n"
+              "|---|---|---|---|---|---|---|---|---|");
     std::vector<Input> inputs;
     inputs.push_back({"box", makeShape("box")});
     inputs.push_back({"torus", makeShape("torus")});
@@ -138,31 +133,25 @@ void simple(Queue& queue) {
                 sum += glm::length(d);
                 longest = std::max({longest, d.x, d.y, d.z});
             }
-            const double triangles = double(mesh.triangleCount()), edge = sum / (3 * triangles),
-                         expected = 1.5 * triangles * edge * edge;
+            const double triangles = double(mesh.triangleCount()), edge = sum / (3 * triangles), expected = 1.5 * triangles * edge * edge;
             int halvings = 0;
             for (double factor = 1.15 * longest; factor > 64; factor /= 2) ++halvings;
             std::printf("| %s | %.0f | %u | %.2f | %.2f | %llu | %.0f | %.2f | %d |\n", input.name.c_str(), triangles, resolution,
                         timeOf(queue, mesh, grid, Points{}), missing(voxelize(queue, mesh, grid, Points{}), touched),
-                        static_cast<unsigned long long>(pointsOf(queue, mesh, grid, 1)), expected,
-                        std::log(expected) / std::log(5953.0), halvings);
+                        static_cast<unsigned long long>(pointsOf(queue, mesh, grid, 1)), expected, std::log(expected) / std::log(5953.0), halvings);
         }
     }
 }
 
 void meshes(Queue& queue) {
-    std::puts(
-        "| mesh | triangles | grid | `points`, ms | `conservative`, ms | missing of conservative, % | of thin, % "
-        "|\n|---|---|---|---|---|---|---|");
-    for (const auto& [name, times] :
-         {std::pair("dragon_vrip_res2.ply", 1u), std::pair("turbineblade.ply", 0u), std::pair("xyzrgb_dragon.obj", 4u)}) {
+    std::puts("| mesh | triangles | grid | `points`, ms | `conservative`, ms | missing of conservative, % | of thin, % |\n|---|---|---|---|---|---|---|");
+    for (const auto& [name, times] : {std::pair("dragon_vrip_res2.ply", 1u), std::pair("turbineblade.ply", 0u), std::pair("xyzrgb_dragon.obj", 4u)}) {
         const std::optional<Input> input = file(name, times);
         if (!input) continue;
         const DeviceMesh mesh(queue, input->mesh);
         for (const unsigned resolution : {128u, 512u, 1024u}) {
             const Grid grid = Grid::fit(mesh.bounds(), resolution);
-            const reference::Truth touched = reference::conservative(input->mesh, grid),
-                                   thin = reference::thin(input->mesh, grid);
+            const reference::Truth touched = reference::conservative(input->mesh, grid), thin = reference::thin(input->mesh, grid);
             const Voxels voxels = voxelize(queue, mesh, grid, Points{});
             std::printf("| %s | %u | %u | %.2f | %.2f | %.2f | %.3f |\n", input->name.c_str(), mesh.triangleCount(), resolution,
                         timeOf(queue, mesh, grid, Points{}), timeOf(queue, mesh, grid, Conservative{}), missing(voxels, touched),
@@ -185,8 +174,7 @@ void bias(Queue& queue) {
         for (Float3& p : twisted.positions) {
             const float angle = 6.2831853f * float(frame) / kFrames * (p.y - bounds.low.y) / (bounds.high.y - bounds.low.y);
             const Float3 d = p - centre;
-            p = centre +
-                Float3(d.x * std::cos(angle) - d.z * std::sin(angle), d.y, d.x * std::sin(angle) + d.z * std::cos(angle));
+            p = centre + Float3(d.x * std::cos(angle) - d.z * std::sin(angle), d.y, d.x * std::sin(angle) + d.z * std::cos(angle));
         }
         const Grid grid = Grid::fit(twisted.bounds(), 256);
         const double share = missing(voxelize(queue, twisted, grid, Points{}), reference::conservative(twisted, grid));
@@ -201,8 +189,7 @@ void watertight(Queue& queue) {
     std::puts("| mesh | 64 | 128 | 256 |\n|---|---|---|---|");
     std::vector<Input> inputs;
     inputs.push_back({"torus", makeShape("torus")});
-    for (const char* name :
-         {"spot.obj", "bunny_hr.obj", "horse.ply", "fertility.off", "xyzrgb_dragon.obj", "turbineblade.ply", "hand_closed.obj"})
+    for (const char* name : {"spot.obj", "bunny_hr.obj", "horse.ply", "fertility.off", "xyzrgb_dragon.obj", "turbineblade.ply", "hand_closed.obj"})
         if (std::optional<Input> input = file(name)) inputs.push_back(std::move(*input));
     for (const Input& input : inputs) {
         const DeviceMesh mesh(queue, input.mesh);
@@ -232,9 +219,8 @@ void factors(Queue& queue) {
     std::puts("| mesh | triangles | grid | 0.18: factor, measured by asked | 0.1 | 0.05 | 0.03 |\n|---|---|---|---|---|---|---|");
     std::vector<Input> inputs;
     for (const Shape& shape : shapes()) inputs.push_back({std::string(shape.name), makeShape(shape.name)});
-    for (const char* name : {"bun_zipper.ply", "dragon_vrip_res4.ply", "spot.obj", "teapot.ply", "torus.obj", "horse.ply",
-                             "fertility.off", "igea.ply", "falconstatue.obj", "skull.obj", "scorpion.obj", "hand_closed.obj",
-                             "bunny_hr.obj", "turbineblade.ply", "xyzrgb_dragon.obj"})
+    for (const char* name : {"bun_zipper.ply", "dragon_vrip_res4.ply", "spot.obj", "teapot.ply", "torus.obj", "horse.ply", "fertility.off", "igea.ply",
+                             "falconstatue.obj", "skull.obj", "scorpion.obj", "hand_closed.obj", "bunny_hr.obj", "turbineblade.ply", "xyzrgb_dragon.obj"})
         if (std::optional<Input> input = file(name)) inputs.push_back(std::move(*input));
     double most = 0, least = 1;
     unsigned all = 0, within = 0;
@@ -270,9 +256,9 @@ void factors(Queue& queue) {
 }
 
 using Table = void (*)(Queue&);
-constexpr std::pair<const char*, Table> kTables[] = {{"placements", placements}, {"patches", patches}, {"safety", safety},
-                                                     {"simple", simple},         {"meshes", meshes},   {"bias", bias},
-                                                     {"watertight", watertight}, {"factors", factors}};
+constexpr std::pair<const char*, Table> kTables[] = {{"placements", placements}, {"patches", patches}, {"safety", safety}, {"simple", simple},
+                                                     {"meshes", meshes},         {"bias", bias},       {"watertight", watertight},
+                                                     {"factors", factors}};
 
 }  // namespace
 
@@ -282,10 +268,7 @@ int main(int argc, char** argv) {
         Queue queue(device);
         for (int i = 1; i < argc; ++i)
             if (std::ranges::none_of(kTables, [&](const auto& table) { return std::string(argv[i]) == table.first; })) {
-                std::fprintf(stderr,
-                             "bench_points: there is no table \"%s\"; placements, patches, safety, simple, meshes, bias, "
-                             "watertight, factors\n",
-                             argv[i]);
+                std::fprintf(stderr, "bench_points: there is no table \"%s\"; placements, patches, safety, simple, meshes, bias, watertight, factors\n", argv[i]);
                 return 2;
             }
         for (const auto& [name, table] : kTables)

@@ -1,11 +1,13 @@
-#include <vitrail/core/error.h>
 #include <vitrail/voxelize/points.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <vector>
+
+#include <vitrail/core/error.h>
 
 #include "scene/weld.h"
 #include "voxelize/prepare.h"
@@ -24,39 +26,105 @@ const Buffer<std::uint32_t>& table(detail::Call& call, const detail::Program& pr
                      [&](Buffer<std::uint32_t>& words) { call.launch(program, "points_table", kPatterns, 1, words); });
 }
 
+constexpr std::uint32_t kHeightTile = 16;  // HEIGHT_TILE of kernels/voxelize/curved_points.cl
+
+std::uint64_t heightTiles(const Picture& map) {
+    return std::uint64_t((map.width + kHeightTile - 1) / kHeightTile) * ((map.height + kHeightTile - 1) / kHeightTile);
+}
+
+std::uint64_t heightBytes(const Points& method) {
+    if (method.heights == nullptr) return 0;
+    return method.heights->pixels.size() * sizeof(Float4) + heightTiles(*method.heights) * 3 * sizeof(float);
+}
+
+/// A map of heights on the device, with the largest differences between pixels of each tile.
+struct Heights {
+    Buffer<float> pixels, steepest;
+    std::uint32_t width = 0, height = 0;
+
+    Heights() = default;
+    Heights(detail::Call& call, const Picture& map) : width(map.width), height(map.height) {
+        const std::uint32_t across = (width + kHeightTile - 1) / kHeightTile;
+        std::vector<float> most(3 * heightTiles(map), 0.0f);
+        for (std::uint32_t y = 0; y < height; ++y)
+            for (std::uint32_t x = 0; x < width; ++x) {
+                const float h = map.at(x, y).x, right = map.at((x + 1) % width, y).x, below = map.at(x, (y + 1) % height).x;
+                // A pixel is read with the one below, which may lie in the next tile.
+                const auto put = [&](std::uint32_t column, std::uint32_t row, std::size_t which, float value) {
+                    float& to = most[3 * (std::size_t(row / kHeightTile) * across + column / kHeightTile) + which];
+                    to = std::max(to, value);
+                };
+                const std::uint32_t before = (x + width - 1) % width, above = (y + height - 1) % height;
+                put(x, y, 0, std::abs(right - h));
+                put(x, above, 0, std::abs(right - h));
+                put(x, y, 1, std::abs(below - h));
+                put(before, y, 1, std::abs(below - h));
+                for (const std::uint32_t row : {y, above})
+                    for (const std::uint32_t column : {x, before}) put(column, row, 2, std::abs(h));
+            }
+        Workspace& workspace = call.queue().workspace();
+        pixels = workspace.take<float>(4 * map.pixels.size(), "heights");
+        call.upload(pixels, &map.pixels.front().x, 4 * map.pixels.size());
+        steepest = workspace.take<float>(most.size(), "differences of heights");
+        call.upload(steepest, most.data(), most.size());
+    }
+};
+
+void checkHeights(const Points& method, const DeviceMesh& mesh) {
+    const Picture& map = *method.heights;
+    const auto refuse = [](const char* what, const char* remedy) {
+        throw Error(ErrorCode::badInput, {std::string("points: ") + what, "", "", remedy});
+    };
+    if (map.pixels.empty() || map.pixels.size() != std::size_t(map.width) * map.height)
+        refuse("a map of heights without pixels", "one, or none");
+    if (!mesh.texcoords()) refuse("heights are read at texture coordinates, and the mesh has none", "texcoords, one a vertex");
+    for (const Float4& pixel : map.pixels)
+        if (!std::isfinite(pixel.x)) refuse("a height that is not finite", "numbers, in world units");
+}
+
 Voxels voxelizePatches(Queue& queue, const DeviceMesh& mesh, const Grid& grid, const Points& method) {
     if (!mesh.normals())
         throw Error(ErrorCode::badInput,
                     {"points: PN triangles want vertex normals, and the mesh has none", "", "", "withSmoothNormals(mesh)"});
+    if (method.heights != nullptr) checkHeights(method, mesh);
+    std::optional<Heights> heights;
     return detail::runVoxelizer(queue, mesh, grid, method.channels, Points::name.data(), detail::checkOptions(method),
                                 [&](detail::Pass& pass, const detail::MarkChannels* channels) {
                                     const detail::Program curved{"voxelize/curved_points", pass.program.options};
                                     detail::Pass own{pass.call, pass.mesh, curved, pass.out, pass.tasks};
-                                    detail::launchMark(own, "curved_points", channels, method.safetyFactor, mesh.normals());
-                                });
+                                    if (!heights)
+                                        method.heights != nullptr ? heights.emplace(pass.call, *method.heights)
+                                                                  : heights.emplace();
+                                    detail::launchMark(own, "curved_points", channels, method.safetyFactor, mesh.normals(),
+                                                       heights->pixels, heights->steepest, heights->width, heights->height);
+                                },
+                                {.bytes = heightBytes(method)});
 }
 
 }  // namespace
 
 Voxels voxelize(Queue& queue, const MeshInput& mesh, const Grid& grid, const Points& method) {
+    if (method.heights != nullptr && method.surface != Points::Surface::pnTriangles)
+        throw Error(ErrorCode::badInput,
+                    {"points: heights move PN triangles, and triangles are asked for", "", "", "Surface::pnTriangles"});
     if (method.surface == Points::Surface::pnTriangles) {
         if (grid.desc().kind == VITRAIL_GRID_PERSPECTIVE)
-            throw Error(ErrorCode::unsupported,
-                        {"points on PN triangles works on box and orthographic grids; this one is perspective", "", "",
-                         "triangles instead, subdivided"});
+            throw Error(ErrorCode::unsupported, {"points on PN triangles works on box and orthographic grids; this one is perspective", "", "",
+                                                 "triangles instead, subdivided"});
         return mesh.device() != nullptr ? voxelizePatches(queue, *mesh.device(), grid, method)
                                         : voxelizePatches(queue, DeviceMesh(queue, mesh.view()), grid, method);
     }
     return detail::runVoxelizer(queue, mesh, grid, method.channels, Points::name.data(), detail::checkOptions(method),
                                 [&](detail::Pass& pass, const detail::MarkChannels* channels) {
-                                    detail::launchMark(pass, "points", channels, method.safetyFactor,
-                                                       table(pass.call, pass.program));
+                                    detail::launchMark(pass, "points", channels, method.safetyFactor, table(pass.call, pass.program));
                                 });
 }
 
 std::uint64_t estimate(const MeshInput& mesh, const Grid& grid, const Points& method) {
     const bool patches = method.surface == Points::Surface::pnTriangles;
-    return detail::estimateVoxelizer(mesh, grid, method.channels) +
+    const std::uint64_t heights =
+        heightBytes(method) + (method.heights != nullptr && mesh.device() == nullptr ? mesh.view().texcoords.count * 8 : 0);
+    return detail::estimateVoxelizer(mesh, grid, method.channels) + heights +
            (patches ? (mesh.device() != nullptr ? 0 : mesh.view().normals.count * 12) : kWords * sizeof(std::uint32_t));
 }
 

@@ -91,16 +91,15 @@ INLINE void channels_share(const Channels* channels, const vitrail_GridDesc* gri
     }
 }
 
-// Between the four pixels around a point, the picture repeated.
-static inline float4 channels_texture(const Channels* channels, float2 at) {
-    const float x = (at.x - floor(at.x)) * (float)channels->textureWidth - 0.5f, y = (at.y - floor(at.y)) * (float)channels->textureHeight - 0.5f;
+// Between the four pixels around a point of a picture of four floats a pixel, the picture repeated.
+static inline float4 channels_texture(global const float* texture, uint width, uint height, float2 at) {
+    const float x = (at.x - floor(at.x)) * (float)width - 0.5f, y = (at.y - floor(at.y)) * (float)height - 0.5f;
     const float left = floor(x), top = floor(y), fx = x - left, fy = y - top;
-    const uint width = channels->textureWidth, height = channels->textureHeight;
     const uint x0 = left < 0.0f ? width - 1u : min((uint)left, width - 1u), y0 = top < 0.0f ? height - 1u : min((uint)top, height - 1u);
     const uint x1 = x0 + 1u < width ? x0 + 1u : 0u, y1 = y0 + 1u < height ? y0 + 1u : 0u;
     const size_t row0 = (size_t)y0 * width, row1 = (size_t)y1 * width;
-    const float4 upper = vload4(row0 + x0, channels->texture) * (1.0f - fx) + vload4(row0 + x1, channels->texture) * fx;
-    const float4 lower = vload4(row1 + x0, channels->texture) * (1.0f - fx) + vload4(row1 + x1, channels->texture) * fx;
+    const float4 upper = vload4(row0 + x0, texture) * (1.0f - fx) + vload4(row0 + x1, texture) * fx;
+    const float4 lower = vload4(row1 + x0, texture) * (1.0f - fx) + vload4(row1 + x1, texture) * fx;
     return upper * (1.0f - fy) + lower * fy;
 }
 
@@ -118,7 +117,8 @@ static inline float4 channels_colour(const Share* share, uint x, uint y, uint z)
         colour += share->colour[k] * w;
         texcoord += share->texcoord[k] * w;
     }
-    if (share->channels->texture) colour *= channels_texture(share->channels, texcoord);
+    if (share->channels->texture)
+        colour *= channels_texture(share->channels->texture, share->channels->textureWidth, share->channels->textureHeight, texcoord);
     return clamp(colour, 0.0f, 1.0f);
 }
 

@@ -1,11 +1,28 @@
-// voxelize/curved_points.cl: the points of lib/points.cl on PN triangles: cubic positions, quadratic normals (Vlachos et al. 2001).
+// voxelize/curved_points.cl: the points of lib/points.cl on PN triangles: cubic positions, quadratic normals (Vlachos et al. 2001), moved along
+// the normal by a map of heights where there is one (Fei, Wang & Chen 2012, section 3.3).
 #define POINTS_MICRO
 #include "lib/points.cl"
 #pragma OPENCL FP_CONTRACT OFF
 
+#define HEIGHT_TILE 16  // pixels a side (host/voxelize/points.cpp: kHeightTile)
+
+// Heights in world units, the first of four floats a pixel; `steepest` has for each tile of pixels the largest difference to the next pixel
+// to the right and below, and the largest height, three floats.
+typedef struct {
+    global const float* pixels;  // null: none
+    global const float* steepest;
+    uint width, height;
+} Heights;
+
 // Control points in voxel coordinates and control normals in world space by the exponents of the second and third corner's weights.
 struct PointsPatch {
+    const vitrail_GridDesc* grid;
     Point position[4][4], normal[3][3];
+    const Heights* heights;
+    float2 texcoord[3];
+    real scale;    // cells of a unit of length of the world at most, along an axis
+    real turn[3];  // of the unit normal along a way parallel to each side, at most
+    real rise;     // cells that heights move a point by at most, along an axis
 };
 
 static inline Point pn_combine(real a, Point p, real b, Point q) {
@@ -102,6 +119,91 @@ static inline Point pn_normal(const struct PointsPatch* patch, real u, real v) {
     return pn_unit(n);
 }
 
+static inline float2 pn_texcoord(const struct PointsPatch* patch, real u, real v) {
+    return patch->texcoord[0] + (patch->texcoord[1] - patch->texcoord[0]) * (float)u + (patch->texcoord[2] - patch->texcoord[0]) * (float)v;
+}
+
+static inline Point pn_moved(const struct PointsPatch* patch, real u, real v) {
+    const Point p = pn_position(patch, u, v);
+    const Heights* heights = patch->heights;
+    if (!heights->pixels) return p;
+    const real amount = REAL(channels_texture(heights->pixels, heights->width, heights->height, pn_texcoord(patch, u, v)).x);
+    return pn_combine(REAL(1), p, amount, pn_direction(patch->grid, pn_normal(patch, u, v)));
+}
+
+// Pixels from `first` on, counted from 0 and repeated, that a side of the picture is read at between two coordinates.
+static inline uint heights_first(float low, float high, uint size, uint* first) {
+    const float from = floor(low * (float)size - 0.51f), to = floor(high * (float)size - 0.49f);
+    *first = 0u;
+    if (!(to - from < (float)(size - 1u))) return size;
+    const float turns = floor(from / (float)size);
+    *first = min((uint)(from - turns * (float)size), size - 1u);
+    return (uint)(to - from) + 1u;
+}
+
+// The largest of `steepest` over the tiles under the patch.
+static inline void heights_under(const Heights* heights, const float2 texcoord[3], real most[3]) {
+    const float2 low = fmin(texcoord[0], fmin(texcoord[1], texcoord[2])), high = fmax(texcoord[0], fmax(texcoord[1], texcoord[2]));
+    uint left, top;
+    const uint wide = heights_first(low.x, high.x, heights->width, &left), tall = heights_first(low.y, high.y, heights->height, &top);
+    const uint tiles = (heights->width + HEIGHT_TILE - 1u) / HEIGHT_TILE;
+    for (int k = 0; k < 3; ++k) most[k] = REAL(0);
+    for (uint y = 0u; y < tall;) {
+        const uint row = (top + y) % heights->height;
+        for (uint x = 0u; x < wide;) {
+            const uint column = (left + x) % heights->width;
+            const size_t tile = (size_t)(row / HEIGHT_TILE) * tiles + column / HEIGHT_TILE;
+            for (int k = 0; k < 3; ++k) most[k] = fmax(most[k], REAL(heights->steepest[3 * tile + k]));
+            x += min(HEIGHT_TILE - column % HEIGHT_TILE, heights->width - column);
+        }
+        y += min(HEIGHT_TILE - row % HEIGHT_TILE, heights->height - row);
+    }
+}
+
+// The longest row of the matrix from the world to cells.
+static inline real pn_scale(const vitrail_GridDesc* grid) {
+    const Point x = {REAL(1), REAL(0), REAL(0)}, y = {REAL(0), REAL(1), REAL(0)}, z = {REAL(0), REAL(0), REAL(1)};
+    const Point a = pn_direction(grid, x), b = pn_direction(grid, y), c = pn_direction(grid, z);
+    return sqrt(fmax(a.x * a.x + b.x * b.x + c.x * c.x, fmax(a.y * a.y + b.y * b.y + c.y * c.y, a.z * a.z + b.z * b.z + c.z * c.z)));
+}
+
+// The derivative of n / |n| is at most that of n over |n|, and |n| no less than n along the mean of the control normals.
+static inline void pn_turns(struct PointsPatch* patch) {
+    Point mean = {REAL(0), REAL(0), REAL(0)};
+    for (int i = 0; i <= 2; ++i)
+        for (int j = 0; i + j <= 2; ++j) mean = pn_combine(REAL(1), mean, REAL(1), patch->normal[i][j]);
+    mean = pn_unit(mean);
+    real least = REAL(1);
+    for (int i = 0; i <= 2; ++i)
+        for (int j = 0; i + j <= 2; ++j) least = fmin(least, channels_dot(mean, patch->normal[i][j]));
+    least = fmax(least, REAL(0.125f));
+    const int di[3] = {1, -1, 0}, dj[3] = {0, 1, -1};
+    for (int e = 0; e < 3; ++e) {
+        real square = REAL(0);
+        for (int i = 0; i <= 2; ++i)
+            for (int j = 0; i + j <= 2; ++j) {
+                const int ni = i + di[e], nj = j + dj[e];
+                if (ni < 0 || nj < 0 || ni + nj > 2) continue;
+                const Point d = pn_combine(REAL(1), patch->normal[ni][nj], REAL(-1), patch->normal[i][j]);
+                square = fmax(square, channels_dot(d, d));
+            }
+        patch->turn[e] = REAL(2) * sqrt(square) / least;
+    }
+}
+
+// What heights add to the factors of a part of the patch, `size` of its sides long, at these texture coordinates: their own differences along a
+// side, at most what they are from pixel to pixel, and the turn of the normal times the largest. The most cells that they move a point by.
+static inline real pn_heights(const struct PointsPatch* patch, real gamma, const float2 texcoord[3], real size, real factor[3]) {
+    real most[3];
+    heights_under(patch->heights, texcoord, most);
+    for (int e = 0; e < 3; ++e) {
+        const float2 along = fabs(texcoord[e == 2 ? 0 : e + 1] - texcoord[e]);
+        const real slope = REAL(along.x) * REAL(patch->heights->width) * most[0] + REAL(along.y) * REAL(patch->heights->height) * most[1];
+        factor[e] += gamma * patch->scale * (slope + size * patch->turn[e] * most[2]);
+    }
+    return most[2] * patch->scale;
+}
+
 // Cells that the patch moves at most, along the axis of most, for a whole way parallel to each side: the derivative along a side is a
 // quadratic patch whose control points are three times the differences below, and no part of it is larger than the largest of them.
 static inline void pn_factors(const struct PointsPatch* patch, real gamma, real factor[3]) {
@@ -122,7 +224,7 @@ static inline void pn_factors(const struct PointsPatch* patch, real gamma, real 
 static inline void points_micro(Scatter* s, Point a, Point b, Point c) {
     const real u = (a.x + b.x + c.x) / REAL(3), v = (a.y + b.y + c.y) / REAL(3);
     uint cell[3];
-    if (!points_cell(s->grid, pn_position(s->patch, u, v), cell)) return;
+    if (!points_cell(s->grid, pn_moved(s->patch, u, v), cell)) return;
     if (s->channels && (s->channels->normalSum || s->channels->orientationSum)) {
         points_flush(s);  // every point has its own normal
         channels_share_normal(&s->share, pn_normal(s->patch, u, v));
@@ -130,7 +232,7 @@ static inline void points_micro(Scatter* s, Point a, Point b, Point c) {
     points_put(s, cell[0], cell[1], cell[2], 1u);
 }
 
-// Whether the control points, and with them the patch, lie beyond one side of the grid.
+// Whether the control points, and with them the patch, lie beyond one side of the grid, whatever the heights.
 static inline bool pn_outside(const vitrail_GridDesc* grid, const struct PointsPatch* patch) {
     Point low = patch->position[0][0], high = low;
     for (int i = 0; i <= 3; ++i)
@@ -143,23 +245,35 @@ static inline bool pn_outside(const vitrail_GridDesc* grid, const struct PointsP
             high.y = fmax(high.y, p.y);
             high.z = fmax(high.z, p.z);
         }
-    return high.x < REAL(0) || high.y < REAL(0) || high.z < REAL(0) || low.x > REAL(grid->size.x) || low.y > REAL(grid->size.y) ||
-           low.z > REAL(grid->size.z);
+    const real rise = patch->rise;
+    return high.x + rise < REAL(0) || high.y + rise < REAL(0) || high.z + rise < REAL(0) || low.x - rise > REAL(grid->size.x) ||
+           low.y - rise > REAL(grid->size.y) || low.z - rise > REAL(grid->size.z);
 }
 
-static inline void pn_triangle(Scatter* s, real gamma, global const float* positions, global const float* normals, const uint corner[3],
-                               uint triangle, int block, bool counting, global uint2* tasks, uint taskCapacity, global uint* status) {
+static inline void pn_triangle(Scatter* s, real gamma, global const float* positions, global const float* normals, const Heights* heights,
+                               global const float* texcoords, const uint corner[3], uint triangle, int block, bool counting,
+                               global uint2* tasks, uint taskCapacity, global uint* status) {
     struct PointsPatch patch;
     pn_load(s->grid, positions, normals, corner, &patch);
     s->patch = &patch;
+    patch.grid = s->grid;
+    patch.heights = heights;
+    patch.rise = REAL(0);
+    real smooth[3];
+    pn_factors(&patch, gamma, smooth);
+    real factor[3] = {smooth[0], smooth[1], smooth[2]};
+    if (heights->pixels) {
+        for (int k = 0; k < 3; ++k) patch.texcoord[k] = vload2(corner[k], texcoords);
+        patch.scale = pn_scale(s->grid);
+        pn_turns(&patch);
+        patch.rise = pn_heights(&patch, gamma, patch.texcoord, REAL(1), factor);
+    }
     if (pn_outside(s->grid, &patch)) {
         if (counting) atomic_inc(status + STATUS_OUTSIDE);
         return;
     }
     const Triangle flat = {patch.position[0][0], patch.position[3][0], patch.position[0][3]};
     if (counting && triangle_degenerate(&flat)) atomic_inc(status + STATUS_DEGENERATE);
-    real factor[3];
-    pn_factors(&patch, gamma, factor);
     const real most = fmax(factor[0], fmax(factor[1], factor[2])) * CLOSER;
     if (!(most <= MAX_FACTOR * REAL(1u << MAX_SPLITS))) {
         if (counting) atomic_inc(status + STATUS_SKIPPED);
@@ -175,25 +289,34 @@ static inline void pn_triangle(Scatter* s, real gamma, global const float* posit
         points_flush(s);
         return;
     }
-    int edges[3];
-    real sum = REAL(0);
-    for (int e = 0; e < 3; ++e) {
-        const real t = factor[e] * CLOSER / REAL(1u << splits);
-        edges[e] = max(real_ceil_int(t), 1);
-        sum += t;
-    }
-    const int n = points_inside(real_ceil_int(sum / REAL(3)), edges);
+    const real size = REAL(1) / REAL(1u << splits);
     const ulong step = 1ul << (2 * (MAX_SPLITS - splits)), share = 1ul << (2 * (MAX_SPLITS - taskSplits));
     const ulong first = block < 0 ? 0ul : (ulong)block * share, end = block < 0 ? 1ul << (2 * MAX_SPLITS) : first + share;
     for (ulong path = first; path < end; path += step) {
         Point c[3];
         points_part(unit, path, splits, c);
-        points_tessellate(s, c, n, edges);
+        if (splits > 0)
+            for (int e = 0; e < 3; ++e) factor[e] = smooth[e] * size;
+        if (splits > 0 && heights->pixels) {
+            // Parts away from what is steep have fewer points.
+            float2 texcoord[3];
+            for (int k = 0; k < 3; ++k) texcoord[k] = pn_texcoord(&patch, c[k].x, c[k].y);
+            pn_heights(&patch, gamma, texcoord, size, factor);
+        }
+        int edges[3];
+        real sum = REAL(0);
+        for (int e = 0; e < 3; ++e) {
+            edges[e] = clamp(real_ceil_int(factor[e] * CLOSER), 1, (int)MAX_FACTOR);
+            sum += fmin(factor[e] * CLOSER, MAX_FACTOR);
+        }
+        points_tessellate(s, c, points_inside(real_ceil_int(sum / REAL(3)), edges), edges);
     }
     points_flush(s);
 }
 
-kernel void curved_points_mark(const vitrail_GridDesc grid, float safetyFactor, global const float* normals, MARK_PARAMETERS) {
+kernel void curved_points_mark(const vitrail_GridDesc grid, float safetyFactor, global const float* normals, global const float* heightPixels,
+                               global const float* steepest, uint heightsWidth, uint heightsHeight, MARK_PARAMETERS) {
+    const Heights heights = {heightPixels, steepest, heightsWidth, heightsHeight};
     const Channels channels = MARK_CHANNELS;
     const Bits bits = MARK_BITS;
     Scatter s;
@@ -205,7 +328,8 @@ kernel void curved_points_mark(const vitrail_GridDesc grid, float safetyFactor, 
         if (!good && counting) atomic_inc(status + STATUS_SKIPPED);
         if (good) {
             points_attributes(&s, positions, indices, vertexCount, triangle);
-            pn_triangle(&s, REAL(safetyFactor), positions, normals, corner, triangle, block, counting, tasks, taskCapacity, status);
+            pn_triangle(&s, REAL(safetyFactor), positions, normals, &heights, texcoords, corner, triangle, block, counting, tasks, taskCapacity,
+                        status);
         }
     })
 }

@@ -67,10 +67,16 @@ int main() {
         }
 
         {
-            const Mesh bent = withSmoothNormals(large);
+            Mesh bent = withSmoothNormals(large);
+            bent.texcoords = {{-0.2f, 0.1f}, {2.3f, 0}, {0.4f, 1}};
+            Picture rough(21, 17);
+            for (std::uint32_t y = 0; y < rough.height; ++y)
+                for (std::uint32_t x = 0; x < rough.width; ++x) rough.at(x, y).x = static_cast<float>((3 * x + 5 * y) % 7) * 0.1f;
             const Voxels patches =
                 voxelize(queue, bent, wide, Points{.channels = Channel::normal, .surface = Points::Surface::pnTriangles});
-            std::printf("points on patches: %llu voxels\n", static_cast<unsigned long long>(patches.occupied()));
+            const Voxels displaced = voxelize(queue, bent, wide, Points{.surface = Points::Surface::pnTriangles, .heights = &rough});
+            std::printf("points on patches: %llu voxels, %llu with heights\n", static_cast<unsigned long long>(patches.occupied()),
+                        static_cast<unsigned long long>(displaced.occupied()));
             Skin rig;
             rig.positions = bent.positions;
             rig.normals = bent.normals;

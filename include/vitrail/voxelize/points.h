@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include <vitrail/grid/grid.h>
+#include <vitrail/scene/image.h>
 #include <vitrail/scene/mesh.h>
 #include <vitrail/volume/voxels.h>
 
@@ -21,6 +22,9 @@ struct Points {
     float safetyFactor = 1.0f;         ///< gamma of eq. 1, 0.25 to 16; higher misses less and costs about its square
     Channel channels = Channel::none;  ///< attributes wanted beside occupancy
     Surface surface = Surface::triangles;
+    /// Moves the points of PN triangles along the surface's unit normal (Fei's section 3.3) by the first channel of a map read at their texture
+    /// coordinates, linear between pixels, (0, 0) the map's upper left corner, repeated; world units, either sign. Null: none.
+    const Picture* heights = nullptr;
 
     template <class Self, class Visit>
     static void visitOptions(Self& self, Visit&& visit) {
@@ -40,7 +44,11 @@ struct Points {
 /// On PN triangles: the factor of a side is the largest difference of control points along it, three times, so that no way across a patch
 /// is longer than its segments; a patch may leave the cells of its triangle but not the box of its control points; normals of channels are
 /// the quadratic ones, colours those of the triangle; box and orthographic grids. Error (badInput) without normals, (unsupported) on
-/// perspective grids. Waits, memory and errors as voxelize(..., Conservative).
+/// perspective grids. With heights a point moves along the quadratic normal, and the factor of a side grows by what the steepest pixels under
+/// the triangle and the turn of its normal can move points apart (Fei keeps the factors of the triangle, and leaves holes on steep slopes):
+/// points lie within 0.002 cell of the moved surface, and what is missing of it is what points miss of a mesh of it; normals of channels stay
+/// those of the surface that is moved. The map is copied to the device at each call, 16 bytes a pixel. Error (badInput): heights without PN
+/// triangles, without texture coordinates, without pixels, or not finite. Waits, memory and errors as voxelize(..., Conservative).
 Voxels voxelize(Queue& queue, const MeshInput& mesh, const Grid& grid, const Points& method);
 std::uint64_t estimate(const MeshInput& mesh, const Grid& grid, const Points& method);
 
