@@ -216,19 +216,21 @@ kernel void solid_winding_columns(const vitrail_GridDesc grid, global const uint
                 sorted[to] = value;
             }
         int ofClosed = 0, ofOpen = 0;
-        uint next = 0u, word = 0u;
+        uint next = 0u;
         global uint* out = bits + bits_word(&grid, 0, x, y, 0u);
+        const uint lastSlices = grid.size.z - (grid.size.w - 1u) * 32u;
         bool inside = false;
-        for (uint w = 0u; w < grid.size.w; ++w) {
-            word = inside ? 0xffffffffu : 0u;
-            while (next < number && sorted[next] / 128u == w) {
-                const uint bit = sorted[next] / 4u & 31u;
-                winding_pass(sorted[next++], &ofClosed, &ofOpen);
+        // Words before the first crossing and, outside, after the last are clear already.
+        for (uint w = sorted[0] / 128u; w < grid.size.w && (inside || next < number); ++w) {
+            uint word = inside ? 0xffffffffu : 0u;
+            for (uint value; next < number && (value = sorted[next]) / 128u == w; ++next) {
+                winding_pass(value, &ofClosed, &ofOpen);
                 inside = winding_inside(ofClosed, REAL(ofOpen));
-                word = (word & ~(0xffffffffu << bit)) | (inside ? 0xffffffffu << bit : 0u);
+                const uint beyond = 0xffffffffu << (value / 4u & 31u);
+                word = inside ? word | beyond : word & ~beyond;
             }
-            const uint slices = min(grid.size.z - w * 32u, 32u);
-            out[(size_t)w * VITRAIL_WORDS_PER_TILE] = word & (0xffffffffu >> (32u - slices));
+            if (w == grid.size.w - 1u) word &= 0xffffffffu >> (32u - lastSlices);
+            if (word != 0u) out[(size_t)w * VITRAIL_WORDS_PER_TILE] = word;
         }
     }
 }

@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "tests/support/cases.h"
+#include "tests/support/closed.h"
 #include "tests/support/device.h"
 
 namespace vitrail::test {
@@ -29,17 +30,32 @@ std::vector<std::uint32_t> bitsOf(const std::vector<float>& values) {
     return bits;
 }
 
+constexpr Channel kChannels = Channel::count | Channel::normal | Channel::material | Channel::colour | Channel::orientation;
+
+std::string channelsOf(Queue& queue, const Voxels& v) {
+    return hashOf(v.counts()) + hashOf(v.normalBuffer().read(queue)) + hashOf(v.materials()) + hashOf(v.colourBuffer().read(queue)) +
+           hashOf(v.orientationBuffer().read(queue));
+}
+
 }  // namespace
 
 Mesh fingerprintMesh() {
     const Uint3 size(100, 90, 80);
     Mesh mesh = soup(51, 3000, size, 3);
     mesh.append(soup(52, 150, size, 60));
+    mesh = withSmoothNormals(mesh);
+    Random random(53);
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        mesh.colours.push_back({random.in(0, 1), random.in(0, 1), random.in(0, 1), random.in(0, 1)});
+        mesh.texcoords.push_back({random.in(-1, 2), random.in(-1, 2)});
+    }
     return mesh;
 }
 
 std::string fingerprint(Queue& queue, const Mesh& mesh) {
     const Bounds bounds = mesh.bounds();
+    Picture rough(19, 23);
+    for (std::uint32_t i = 0; i < rough.pixels.size(); ++i) rough.pixels[i].x = static_cast<float>(i * i % 31) * 0.05f;
     std::string lines;
     for (const Precision precision : {Precision::best, Precision::single}) {
         const WithPrecision set(queue, precision);
@@ -56,14 +72,17 @@ std::string fingerprint(Queue& queue, const Mesh& mesh) {
             if (!row.cameraGrids) grids.erase(grids.begin() + 1, grids.end());
             grids.push_back(Grid::fit(bounds, coarse ? 10 : 100));
             for (const Grid& grid : grids) {
-                const Channel channels = row.channels ? Channel::count | Channel::normal | Channel::material : Channel::none;
+                const Channel channels = row.channels ? kChannels : Channel::none;
                 const Voxels v = voxelize(queue, mesh, grid, voxelizerByName(row.name, {}, channels));
                 lines += std::string(row.name) + (precision == Precision::single ? " single " : " ") + grid.text() + ":" +
                          hashOf(v.host().words);
-                if (row.channels) lines += hashOf(v.counts()) + hashOf(v.normalBuffer().read(queue)) + hashOf(v.materials());
+                if (row.channels) lines += channelsOf(queue, v);
                 lines += "\n";
             }
         }
+        const Grid grid = Grid::fit(bounds, 50);
+        const Voxels v = voxelize(queue, mesh, grid, Points{.channels = kChannels, .surface = Points::Surface::pnTriangles, .heights = &rough});
+        lines += "points with heights:" + hashOf(v.host().words) + channelsOf(queue, v) + "\n";
     }
     Scene scene;
     scene.mesh = mesh;

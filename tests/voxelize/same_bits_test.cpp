@@ -66,7 +66,7 @@ TEST(SameBits, OnFourQueuesAtOnce) {
 TEST(SameBits, WithoutAtomicsOf64Bits) {
     const Mesh mesh = test::fingerprintMesh();
     const Grid grid = Grid::fit(mesh.bounds(), 100);
-    const Channel all = Channel::count | Channel::normal | Channel::material;
+    const Channel all = Channel::count | Channel::normal | Channel::material | Channel::colour | Channel::orientation;
     const test::WithVariable options("VITRAIL_BUILD_OPTIONS", "-DVITRAIL_NO_INT64_ATOMICS");
     const test::WithVariable cache("VITRAIL_CACHE_DIR", "/dev/null");  // to keep these programs would compile kernels that are not run
     Device device = Device::select();
@@ -75,6 +75,8 @@ TEST(SameBits, WithoutAtomicsOf64Bits) {
         const Voxels with = voxelize(queue(), mesh, grid, voxelizerByName(name, {}, all));
         const Voxels without = voxelize(other, mesh, grid, voxelizerByName(name, {}, all));
         EXPECT_EQ(without.normalBuffer().read(other), with.normalBuffer().read(queue())) << name;
+        EXPECT_EQ(without.colourBuffer().read(other), with.colourBuffer().read(queue())) << name;
+        EXPECT_EQ(without.orientationBuffer().read(other), with.orientationBuffer().read(queue())) << name;
         EXPECT_EQ(without.counts(), with.counts()) << name;
     }
 }
