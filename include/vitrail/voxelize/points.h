@@ -46,7 +46,7 @@ struct Points {
 /// the quadratic ones, colours those of the triangle; box and orthographic grids. Error (badInput) without normals, (unsupported) on
 /// perspective grids. With heights a point moves along the quadratic normal, and the factor of a side grows by what the steepest pixels under
 /// the triangle and the turn of its normal can move points apart (Fei keeps the factors of the triangle, and leaves holes on steep slopes):
-/// points lie within 0.002 cell of the moved surface, and what is missing of it is what points miss of a mesh of it; normals of channels stay
+/// points lay within 0.002 cell of the moved surface on what was tried, and what is missing of it is what points miss of a mesh of it; normals of channels stay
 /// those of the surface that is moved. The map is copied to the device at each call, 16 bytes a pixel. Error (badInput): heights without PN
 /// triangles, without texture coordinates, without pixels, or not finite. Waits, memory and errors as voxelize(..., Conservative).
 Voxels voxelize(Queue& queue, const MeshInput& mesh, const Grid& grid, const Points& method);
@@ -56,7 +56,7 @@ std::uint64_t estimate(const MeshInput& mesh, const Grid& grid, const Points& me
 /// are cells of which a triangle cuts off a corner: for each triangle's normal and density of points the share of a plane's sections with a
 /// cell that hold none, times 1.5; more, to 1.81 times that, where edges turn by more than 1.25 radians a cell of their length and area, as at
 /// parts thinner than two cells. It falls about as 1 / safetyFactor (Fei's eq. 3, a logarithm, contradicts itself at 1); surfaces along the
-/// grid's axes miss next to nothing. Measured over `missing` was 0.66 to 1 at 182 of 184 (`bench_points factors`: 24 meshes, grids of 64 to
+/// grid's axes miss next to nothing. Measured over `missing` was 0.656 to 1 at 182 of 184 (`bench_points factors`: 24 meshes, grids of 64 to
 /// 256, shares of 0.03 to 0.18), 1.07 and 1.10 where the vertices of a height field lie on cells' faces; 0.65 to 1.1 on coarse meshes in small
 /// grids. No bound is proved. `mesh` and `grid` share one space; works on the host, in 48 bytes an edge of a triangle. Throws Error
 /// (unsupported) where that was not seen to hold: a factor outside (1, 8], or edges that on the mean are shorter than a cell.
