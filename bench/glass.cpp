@@ -1,7 +1,8 @@
 // bench/glass.cpp: a frame of glass, voxelized and traced, by every glass method of the table, with its rays judged by the reference. A benchmark is
-// <mesh>/<resolution>/<method> at index of refraction 1.14, and at 256 voxels also <mesh>/256/<method>/ior=<index>; its time is the device time of one view of 512 x 512 pixels, and its rates are means over four
-// views (measures.md, "Accuracy of light"). Meshes: generated ones, and real ones where VITRAIL_DATA names a folder of them.
-// bench_glass --tables prints Tables 2 and 3 of Chang et al. 2013 on this machine instead, as Markdown, beside what they print.
+// <mesh>/<resolution>/<method> at index of refraction 1.14, and at 256 voxels also <mesh>/256/<method>/ior=<index>; its time is the device time
+// of one view of 512 x 512 pixels, and its rates are means over four views (measures.md, "Accuracy of light"). Meshes: generated ones, and real
+// ones where VITRAIL_DATA names a folder of them. bench_glass --tables prints Tables 2 and 3 of Chang et al. 2013 on this machine instead, as
+// Markdown, beside what they print.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

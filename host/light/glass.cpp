@@ -57,8 +57,8 @@ void checkReflections(const Glass& effect, const GlassMethod& method) {
 }
 
 detail::MarchLaunch shading(Queue& queue, const Scene& scene, const Glass& effect, const GlassMethod& method) {
-    return [&](detail::Call& call, const detail::MarchVolume& volume, std::uint64_t samples, const Buffer<float>& seen, const Buffer<std::uint32_t>& status) {
-        const vitrail_LightDesc light = detail::describeLight(scene, effect.ground, scene.mesh.bounds());
+    return [&, light = detail::describeLight(scene, effect.ground, scene.mesh.bounds())](
+               detail::Call& call, const detail::MarchVolume& volume, std::uint64_t samples, const Buffer<float>& seen, const Buffer<std::uint32_t>& status) {
         const Buffer<float> map = detail::uploadEnvironment(call, scene);
         const Buffer<float> none;
         const CausticMap* caustic = effect.caustics;

@@ -71,8 +71,17 @@ const Scene& GlassVoxels::scene() const { return state_->scene; }
 const GlassMethod& GlassVoxels::method() const { return state_->method; }
 
 std::uint64_t GlassVoxels::edit(Queue& queue, const EditRegion& region, const Material& material) {
-    if (!(material.transmission > 0.5f))
-        throw Error(ErrorCode::badOption, {"an edit's material is opaque", "", "", "a material with transmission above 0.5"});
+    const auto refuse = [](const char* what, const char* remedy) { throw Error(ErrorCode::badOption, {what, "", "", remedy}); };
+    if (!material.isBody()) refuse("an edit's material has no inside", "a material with transmission above 0.5 and a thickness");
+    const auto known = [](const Float3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); };
+    const auto* box = std::get_if<Bounds>(&region);
+    const auto* brush = std::get_if<Brush>(&region);
+    const auto* mesh = std::get_if<const Mesh*>(&region);
+    const auto* function = std::get_if<std::function<bool(const Float3&)>>(&region);
+    if (box && !(known(box->low) && known(box->high))) refuse("a box to edit is not finite", "finite corners");
+    if (brush && !(known(brush->centre) && std::isfinite(brush->radius) && brush->radius >= 0))
+        refuse("a brush has no place, or a negative radius", "a finite centre, a radius of 0 or above");
+    if ((mesh && !*mesh) || (function && !*function)) refuse("there is no region to edit", "a mesh, or a function");
     detail::MarchVolume& volume = state_->volume;
     const Grid& grid = volume.grid;
     const vitrail_GridDesc& desc = grid.desc();
@@ -83,27 +92,25 @@ std::uint64_t GlassVoxels::edit(Queue& queue, const EditRegion& region, const Ma
     Cells cells{Uint3(0), size};
     std::function<bool(std::uint32_t, std::uint32_t, std::uint32_t)> holds;
     std::optional<Voxels> solid;
-    if (const auto* box = std::get_if<Bounds>(&region)) {
+    if (box) {
         cells = detail::cellsOf(grid, *box);
-        holds = [&, box](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+        holds = [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
             const Float3 p = centre(x, y, z);
             return glm::all(glm::greaterThanEqual(p, box->low)) && glm::all(glm::lessThan(p, box->high));
         };
-    } else if (const auto* brush = std::get_if<Brush>(&region)) {
-        if (!(brush->radius >= 0)) throw Error(ErrorCode::badOption, {"a brush's radius is negative", "", "", "0 or above"});
+    } else if (brush) {
         cells = detail::cellsOf(grid, {brush->centre - Float3(brush->radius), brush->centre + Float3(brush->radius)});
-        holds = [&, brush](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+        holds = [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
             const Double3 r = Double3(centre(x, y, z)) - Double3(brush->centre);
             return glm::dot(r, r) <= static_cast<double>(brush->radius) * brush->radius;
         };
-    } else if (const auto* mesh = std::get_if<const Mesh*>(&region)) {
+    } else if (mesh) {
         cells = detail::cellsOf(grid, (*mesh)->bounds());
         solid = voxelize(queue, **mesh, grid, Solid{});
         const VoxelBits& bits = solid->host();
         holds = [&bits](std::uint32_t x, std::uint32_t y, std::uint32_t z) { return bits.at(x, y, z); };
     } else {
-        const auto& function = std::get<std::function<bool(const Float3&)>>(region);
-        holds = [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) { return function(centre(x, y, z)); };
+        holds = [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) { return (*function)(centre(x, y, z)); };
     }
     std::vector<Uint3> set;
     Cells used{size, Uint3(0)};

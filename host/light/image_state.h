@@ -11,7 +11,7 @@ namespace vitrail {
 inline namespace v0 {
 namespace detail {
 
-/// Counts of a march, in this order (kernels/light/glass.cl).
+/// Counts of a march, in this order (kernels/lib/optics.cl).
 enum LightStatus : std::uint32_t { kLightLost, kLightBounded, kLightStatusWords };
 
 struct ImageState {

@@ -115,7 +115,8 @@ vitrail_Media mediaAt(const Scene& scene, const Float3& eye) {
     const MeshView mesh = scene.mesh.view();
     for (std::uint32_t i = 0; i < mesh.triangleCount(); ++i) {
         const std::uint32_t material = mesh.materials.empty() ? 0 : mesh.materials[i];
-        if (scene.materials[material].transmission <= 0.5f || scene.materials[material].thickness == 0.0f) continue;
+        if (!scene.materials[material].isBody()) continue;
+        if (std::max({mesh.index(3 * i), mesh.index(3 * i + 1), mesh.index(3 * i + 2)}) >= mesh.positions.count) continue;
         const Double3 a(mesh.positions[mesh.index(3 * i)]), u = Double3(mesh.positions[mesh.index(3 * i + 1)]) - a,
                       w = Double3(mesh.positions[mesh.index(3 * i + 2)]) - a, p = glm::cross(d, w), r = o - a, q = glm::cross(r, u);
         const double across = glm::dot(u, p), b = glm::dot(r, p) / across, c = glm::dot(d, q) / across, t = glm::dot(w, q) / across;

@@ -30,11 +30,11 @@ ShadowMethod called(std::string_view name) {
 /// Rays through the scene's own voxels.
 Image byRays(Queue& queue, const Scene& scene, const Camera& camera, const Shadow& effect, const GlassMethod& method) {
     if (effect.lit) throw Error(ErrorCode::badOption, {"shadow: glass is not matt", "", "", "counted or uniform with lit, or the effect glass"});
+    const vitrail_LightDesc light = detail::describeLight(scene, effect.ground, scene.mesh.bounds());
     return detail::marchPicture(queue, scene, camera, method, effect.samples, "shadow",
                                 [&](detail::Call& call, const detail::MarchVolume& volume, std::uint64_t samples, const Buffer<float>& seen,
-                                    const Buffer<std::uint32_t>&) {
-                                    const vitrail_LightDesc light = detail::describeLight(scene, effect.ground, scene.mesh.bounds());
-                                    detail::launchMarch(call, "shadow", "shadow_shade", volume, samples, light, seen);
+                                    const Buffer<std::uint32_t>& status) {
+                                    detail::launchMarch(call, "shadow", "shadow_shade", volume, samples, light, status, seen);
                                 });
 }
 

@@ -59,14 +59,14 @@ ShadowMap shadowMap(Call& call, const Scene& scene, const DeviceMesh& mesh, cons
     const Grid grid = lightGrid(scene, method.resolution, method.slices);
     std::vector<Float4> absorptions;
     for (const Material& m : scene.materials) {
-        const bool body = m.transmission > 0.5f;
+        const bool body = m.isBody();
         absorptions.push_back(body ? Float4(0.0f) : Float4(-glm::log(glm::max(m.layerTransmittance(), 1e-7f)), 0.0f));
     }
     ShadowMap map = mapOf(call, mesh, grid, absorptions, true);
     const float thickness = (grid.desc().extent.w - grid.desc().extent.z) / static_cast<float>(grid.desc().size.z);
     for (std::uint32_t material = 0; material < scene.materials.size(); ++material) {
         const Float3 sigma = scene.materials[material].absorption();
-        if (scene.materials[material].transmission <= 0.5f || sigma == Float3(0.0f)) continue;
+        if (!scene.materials[material].isBody() || sigma == Float3(0.0f)) continue;
         // The triangles of this material alone bound its bodies.
         MeshView body = scene.mesh.view();
         std::vector<std::uint32_t> indices;

@@ -27,6 +27,7 @@ double reflectance(double cosine, double ratio) {
 
 PhotonSums caustics(const Scene& scene, const Camera& light, double groundHeight, Float2 low, double edge, std::uint32_t texels) {
     const Mesh& mesh = scene.mesh;
+    checkMaterials(scene);
     const Triangles triangles(mesh);
     const Bounds bounds = mesh.bounds();
     const Double3 centre = (Double3(bounds.low) + Double3(bounds.high)) * 0.5;

@@ -1,13 +1,12 @@
 #include <vitrail/reference/glass.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <string>
-#include <thread>
 
 #include <vitrail/core/error.h>
 
+#include "reference/camera_rays.h"
 #include "reference/triangles.h"
 
 namespace vitrail {
@@ -49,8 +48,8 @@ public:
             if (other.triangle != kNone && !vitrail_first(one.material, one.inside, other.material, other.inside)) std::swap(one, other);
             vitrail_Media past = media;
             std::uint32_t before = vitrail_medium(&media);
-            if (!isThin(one)) before = vitrail_pass(&past, one.material, one.inside);
-            if (other.triangle != kNone && !isThin(other)) vitrail_pass(&past, other.material, other.inside);
+            if (!isThin(one) && !isOpaque(one)) before = vitrail_pass(&past, one.material, one.inside);
+            if (other.triangle != kNone && !isThin(other) && !isOpaque(other)) vitrail_pass(&past, other.material, other.inside);
             const std::uint32_t behind = vitrail_medium(&past);
             if (before != VITRAIL_AIR) through *= glm::exp(-Double3(scene_.materials[before].absorption()) * one.length);
             const Surface* opaque = isOpaque(one) ? &one : isOpaque(other) ? &other : nullptr;
@@ -155,32 +154,18 @@ private:
 }  // namespace
 
 std::vector<vitrail_RayEnd> glass(const Scene& scene, const Camera& camera, double shiftX, double shiftY) {
-    for (const std::uint32_t material : scene.mesh.materials)
-        if (material >= scene.materials.size())
-            throw Error(ErrorCode::badInput, {"a triangle names material " + std::to_string(material) + " of " + std::to_string(scene.materials.size()), "", "",
-                                              "materials that index the scene's list"});
+    checkMaterials(scene);
     const Tracer tracer(scene);
-    const Double3 eye(camera.eye), forward = glm::normalize(Double3(camera.target) - eye), right = glm::normalize(glm::cross(forward, Double3(camera.up))),
-                  up = glm::cross(right, forward);
-    const bool flat = camera.orthographicHeight > 0;
-    const double halfHeight = flat ? 0.5 * camera.orthographicHeight : std::tan(glm::radians(0.5 * camera.fieldOfViewDegrees)),
-                 halfWidth = halfHeight * camera.width / camera.height;
-    const vitrail_Media around = tracer.around(eye);
+    const CameraRays rays(camera);
+    const vitrail_Media around = tracer.around(Double3(camera.eye));
     std::vector<vitrail_RayEnd> ends(std::size_t(camera.width) * camera.height);
-    std::atomic<std::uint32_t> nextRow = 0;
-    const auto rows = [&] {
-        for (std::uint32_t y = nextRow++; y < camera.height; y = nextRow++)
-            for (std::uint32_t x = 0; x < camera.width; ++x) {
-                const Double3 across = right * (((x + 0.5 + shiftX) / camera.width * 2 - 1) * halfWidth) +
-                                       up * ((1 - (y + 0.5 + shiftY) / camera.height * 2) * halfHeight);
-                ends[std::size_t(y) * camera.width + x] =
-                    flat ? tracer.trace(eye + across, forward, around) : tracer.trace(eye, glm::normalize(forward + across), around);
-            }
-    };
-    std::vector<std::jthread> threads;
-    for (unsigned i = 1; i < std::max(1u, std::thread::hardware_concurrency()); ++i) threads.emplace_back(rows);
-    rows();
-    threads.clear();
+    forRows(camera.height, [&](std::uint32_t y) {
+        for (std::uint32_t x = 0; x < camera.width; ++x) {
+            Double3 origin, direction;
+            rays.at(x + 0.5 + shiftX, y + 0.5 + shiftY, origin, direction);
+            ends[std::size_t(y) * camera.width + x] = tracer.trace(origin, direction, around);
+        }
+    });
     return ends;
 }
 

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <vector>
 
-#include <vitrail/core/error.h>
 
 #include "reference/camera_rays.h"
 #include "reference/triangles.h"
@@ -14,19 +13,15 @@ namespace reference {
 
 Picture shadow(const Scene& scene, const Camera& camera, double groundHeight, unsigned samples) {
     const Mesh& mesh = scene.mesh;
-    for (const std::uint32_t material : mesh.materials)
-        if (material >= scene.materials.size())
-            throw Error(ErrorCode::badInput,
-                        {"a triangle names material " + std::to_string(material) + " of " + std::to_string(scene.materials.size()), "", "",
-                         "materials that index the scene's list"});
+    checkMaterials(scene);
     const Triangles triangles(mesh, true);
     const Bounds bounds = mesh.bounds();
     const Double3 low(bounds.low), high(bounds.high), centre = (low + high) * 0.5, toLight = glm::normalize(Double3(scene.light.toLight));
     const double radius = 6 * glm::length(high - low);
     std::vector<Double3> layers, sigmas;
     for (const Material& m : scene.materials) {
-        layers.push_back(m.transmission > 0.5f ? Double3(1.0) : Double3(m.layerTransmittance()));
-        sigmas.push_back(m.transmission > 0.5f ? Double3(m.absorption()) : Double3(0.0));
+        layers.push_back(m.isBody() ? Double3(1.0) : Double3(m.layerTransmittance()));
+        sigmas.push_back(m.isBody() ? Double3(m.absorption()) : Double3(0.0));
     }
     const auto crossing = [&](std::uint32_t t, const Double3& o, const Double3& d, double& slope) {
         const Double3 a = vertex(mesh, t, 0), n = glm::cross(vertex(mesh, t, 1) - a, vertex(mesh, t, 2) - a);

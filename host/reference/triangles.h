@@ -10,9 +10,11 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <string>
 #include <type_traits>
 
-#include <vitrail/scene/mesh.h>
+#include <vitrail/core/error.h>
+#include <vitrail/scene/scene.h>
 
 namespace vitrail {
 inline namespace v0 {
@@ -22,6 +24,14 @@ constexpr std::uint32_t kNone = 0xffffffffu;
 
 inline Double3 vertex(const Mesh& mesh, std::uint32_t triangle, int corner) {
     return Double3(mesh.positions[mesh.indices[3 * triangle + static_cast<unsigned>(corner)]]);
+}
+
+/// Throws Error (badInput).
+inline void checkMaterials(const Scene& scene) {
+    for (const std::uint32_t material : scene.mesh.materials)
+        if (material >= scene.materials.size())
+            throw Error(ErrorCode::badInput, {"a triangle names material " + std::to_string(material) + " of " + std::to_string(scene.materials.size()),
+                                              "", "", "materials that index the scene's list"});
 }
 
 /// Interpolated at r from the first corner; u, w: its edges from there, `across` their product, `geometric` that of unit length.

@@ -61,6 +61,8 @@ typedef struct {
     vitrail_Media media;  // that it is inside of
     uint triangle, otherTriangle;  // that it stands on, or NO_TRIANGLE
     float least;  // only what lies past this distance counts
+    uint sheet;   // material of a surface without a body that the ray stands on and goes through, or VITRAIL_AIR
+    bool back;    // which it met from behind
     int steps;    // cells and bricks walked so far
 } March;
 
@@ -71,25 +73,38 @@ static inline March march_begin(bool inside, uint material, float least) {
     march.media.material[0] = material;
     march.triangle = march.otherTriangle = NO_TRIANGLE;
     march.least = least;
+    march.sheet = VITRAIL_AIR;
+    march.back = false;
     march.steps = 0;
     return march;
 }
 
 static inline bool march_thin(const Volume* volume, uint material) { return volume->materials[material].surface.y > 0.0f; }
 
-// The medium before a crossing; `media` becomes what is behind. Thin walls hold nothing.
+static inline bool march_opaque(const Volume* volume, uint material) { return volume->materials[material].colour.w <= 0.5f; }
+
+// The medium before a crossing; `media` becomes what is behind. Thin walls and opaque surfaces hold nothing.
 static inline uint march_pass(const Volume* volume, const Crossing* hit, vitrail_Media* media) {
     uint before = vitrail_medium(media);
-    if (!march_thin(volume, hit->material)) before = vitrail_pass(media, hit->material, hit->inside);
-    if (hit->otherMaterial != VITRAIL_AIR && !march_thin(volume, hit->otherMaterial))
+    if (!march_thin(volume, hit->material) && !march_opaque(volume, hit->material)) before = vitrail_pass(media, hit->material, hit->inside);
+    if (hit->otherMaterial != VITRAIL_AIR && !march_thin(volume, hit->otherMaterial) && !march_opaque(volume, hit->otherMaterial))
         vitrail_pass(media, hit->otherMaterial, hit->otherInside);
     return before;
+}
+
+// The ray goes on behind the surface that it met. Planes of the next voxels hold a sheet that was passed once more.
+static inline void march_stand(const Volume* volume, const Crossing* hit, March* march) {
+    march->triangle = hit->triangle;
+    march->otherTriangle = hit->otherTriangle;
+    march->sheet = !hit->edited && (march_thin(volume, hit->material) || march_opaque(volume, hit->material)) ? hit->material : VITRAIL_AIR;
+    march->back = hit->inside;
 }
 
 static inline float march_index(const Volume* volume, uint medium) {
     return medium == VITRAIL_AIR ? 1.0f : volume->materials[medium].absorption.w;
 }
 
+#define SHEET 1.5f  // cells past a sheet within which planes of it count no more
 #define REACH 0.5f  // cells that a march begins before `least`, and past its own by which a plane still counts
 
 static inline float3 to_voxel(const vitrail_GridDesc* grid, float3 p) { return (p - xyz(grid->origin)) / grid->extent.x; }

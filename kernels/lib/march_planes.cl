@@ -1,7 +1,8 @@
 // lib/march_planes.cl: the next surface along a ray, from the planes that voxels hold. What the ray is inside of decides which count:
 // outside a material only its planes that face the ray are entered, inside it only those that face away are left, so that neighbouring voxels
-// that hold the same surface never count it twice. A voxel has one material. A plane counts where the ray meets it in its own cell. One met a little outside counts when the ray came
-// through between cells: when a cell without surface behind is known to be on the other side, or a plane of the other kind comes first.
+// that hold the same surface never count it twice; thin walls and opaque surfaces, which have no inside, count from both sides, but not twice
+// within SHEET. A voxel has one material. A plane counts where the ray meets it in its own cell. One met a little outside counts when the ray
+// came through between cells: when a cell without surface behind is known to be on the other side, or a plane of the other kind comes first.
 #ifndef VITRAIL_LIB_MARCH_PLANES
 #define VITRAIL_LIB_MARCH_PLANES
 #include "lib/march.cl"
@@ -97,7 +98,7 @@ static inline bool march_next(const Volume* volume, float3 origin, float3 direct
                 for (int k = 0; k < count; ++k)
                     march_facet(split ? volume->planes[first.normal + (uint)k] : first, corner, origin, direction, &facets[k]);
                 const uint material = volume->voxelMaterial[index];
-                const bool opaque = volume->materials[material].colour.w <= 0.5f || march_thin(volume, material), inside = vitrail_within(&march->media, material) != 0;
+                const bool sheet = march_opaque(volume, material) || march_thin(volume, material), inside = vitrail_within(&march->media, material) != 0;
                 int best = -1, other = -1;
                 for (int k = 0; k < count; ++k) {
                     const float t = facets[k].t;
@@ -105,7 +106,8 @@ static inline bool march_next(const Volume* volume, float3 origin, float3 direct
                     if (!(t > tLeast) || off > REACH) continue;
                     if (split) off = fmax(off, march_past(facets, count, k, first.slope0, origin, direction) - NEAR_EDGE);
                     if (off > REACH) continue;
-                    if (opaque || (facets[k].slope > 0.0f) == inside) {
+                    if (sheet && material == march->sheet && (facets[k].slope > 0.0f) == march->back && t < tLeast + SHEET) continue;
+                    if (sheet || (facets[k].slope > 0.0f) == inside) {
                         if (off <= OWN) {
                             if (best < 0 || t < facets[best].t) best = k;
                         } else if (off < aside) {
@@ -117,7 +119,8 @@ static inline bool march_next(const Volume* volume, float3 origin, float3 direct
                     }
                 }
                 if (other >= 0 && (best < 0 || facets[other].t < facets[best].t)) {
-                    if (!(aside < 2.0f && hit->t < facets[other].t && hit->material == material)) march_met(&facets[other], origin, direction, material, hit);
+                    if (!(aside < 2.0f && hit->t < facets[other].t && hit->material == material))
+                        march_met(&facets[other], origin, direction, material, hit);
                     found = true;
                     break;
                 }

@@ -13,6 +13,9 @@
 #endif
 #pragma OPENCL FP_CONTRACT OFF
 
+#define STATUS_LOST 0     // left the grid inside glass
+#define STATUS_BOUNDED 1  // met the bound of events or steps
+
 // The mirror image of a ray, kept on the side of the surface that it came from.
 static inline void optics_mirror(float3* d, float3 facing, float3 flat) {
     const float3 back = dot(*d, flat) > 0.0f ? -flat : flat;
@@ -50,7 +53,7 @@ static inline float3 optics_facet(float3 n, float3 d, float roughness, float u, 
 // What a surface is like where it was met.
 typedef struct {
     float3 colour;
-    float cover;  // share that is not there to be passed; alpha
+    float cover;  // share that is there; alpha
     float transmission, roughness;
 } Look;
 
@@ -111,25 +114,30 @@ static inline float3 optics_absorb_along(const Volume* volume, float3 p, float3 
     return through;
 }
 
-// Transmittance from a point inside of `media` straight to the light: Beer-Lambert in each body, 1 - F at each crossing, 0 behind opaque voxels.
-static __attribute__((unused)) float3 march_transmittance_from(const Volume* volume, float3 p, float3 toLight, const vitrail_Media* media) {
+// Transmittance from a point inside of `media` straight to the light: Beer-Lambert in each body, 1 - F at each crossing, 0 behind opaque voxels. What
+// meets the bound of steps is dark, and said to be.
+static __attribute__((unused)) float3 march_transmittance_from(const Volume* volume, float3 p, float3 toLight, const vitrail_Media* media,
+                                                               bool* bounded) {
+    *bounded = false;
     float3 through = (float3)(1.0f);
     March march = march_begin(false, 0u, 0.02f);
     march.media = *media;
-    for (int event = 0; event < VITRAIL_MOST_EVENTS; ++event) {
+    for (;;) {
         Crossing hit;
-        if (!march_next(volume, p, toLight, &march, &hit)) return through;
-        march.triangle = hit.triangle;
-        march.otherTriangle = hit.otherTriangle;
+        if (!march_next(volume, p, toLight, &march, &hit)) {
+            *bounded = march.steps >= volume->bound;
+            return *bounded ? (float3)(0.0f) : through;
+        }
+        march_stand(volume, &hit, &march);
         const Look look = optics_look(volume, &hit);
-        if (look.cover == 0.0f || volume->materials[hit.material].colour.w <= 0.5f) {
+        if (look.cover == 0.0f || march_opaque(volume, hit.material)) {
             if (look.cover == 1.0f) return (float3)(0.0f);
             through *= 1.0f - look.cover;
             through *= optics_absorb_along(volume, p, toLight, march.least, hit.t, &march.media, vitrail_medium(&march.media));
             march.least = hit.t;
             continue;
         }
-        if (hit.otherMaterial != VITRAIL_AIR && volume->materials[hit.otherMaterial].colour.w <= 0.5f) return (float3)(0.0f);
+        if (hit.otherMaterial != VITRAIL_AIR && march_opaque(volume, hit.otherMaterial)) return (float3)(0.0f);
         const vitrail_Media media = march.media;
         const uint before = march_pass(volume, &hit, &march.media);
         through *= optics_absorb_along(volume, p, toLight, march.least, hit.t, &media, before);
@@ -141,12 +149,6 @@ static __attribute__((unused)) float3 march_transmittance_from(const Volume* vol
         if (thin) through *= look.colour * look.transmission;
         march.least = hit.t;
     }
-    return through;
-}
-
-static inline float3 march_transmittance(const Volume* volume, float3 p, float3 toLight, bool inside, uint material) {
-    const March march = march_begin(inside, material, 0.0f);
-    return march_transmittance_from(volume, p, toLight, &march.media);
 }
 
 // The first hit of a pixel of the G-buffer, and how far it is from the camera in world units. False: there is none.

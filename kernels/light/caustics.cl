@@ -46,10 +46,13 @@ kernel void caustics_photons(MARCH_PARAMETERS, const vitrail_LightDesc light, co
             vitrail_Media media = march.media;
             const uint before = march_pass(&volume, &hit, &media), behind = vitrail_medium(&media);
             if (before != VITRAIL_AIR) tally[COUNT_ABSORBED] += caustics_keep(&parts, optics_absorb(materials[before].absorption, way));
-            opaque = materials[hit.material].colour.w <= 0.5f || (hit.otherMaterial != VITRAIL_AIR && materials[hit.otherMaterial].colour.w <= 0.5f);
+            const Look look = optics_look(&volume, &hit);
+            const bool veil = march_opaque(&volume, hit.material), thin = march_thin(&volume, hit.material);
+            opaque = (veil && look.cover > 0.996f) || (hit.otherMaterial != VITRAIL_AIR && march_opaque(&volume, hit.otherMaterial));
             if (opaque) break;
-            const bool thin = march_thin(&volume, hit.material);
-            if (thin || before != behind) {
+            if (veil) {
+                tally[COUNT_ABSORBED] += caustics_keep(&parts, (float3)(1.0f - look.cover));
+            } else if (thin || before != behind) {
                 if (events++ == VITRAIL_MOST_EVENTS) {
                     ended = true;
                     break;
@@ -60,15 +63,14 @@ kernel void caustics_photons(MARCH_PARAMETERS, const vitrail_LightDesc light, co
                 if (thin || optics_cross(&d, facing, hit.flat, ratio)) {
                     tally[COUNT_REFLECTED] += caustics_keep(&parts, (float3)(1.0f - reflected));
                     march.media = media;
-                    if (thin || !hit.inside) tally[COUNT_ABSORBED] += caustics_keep(&parts, xyz(materials[hit.material].colour));
+                    if (thin || !hit.inside) tally[COUNT_ABSORBED] += caustics_keep(&parts, look.colour * look.transmission);
                     if (hit.otherMaterial != VITRAIL_AIR && !hit.otherInside)
                         tally[COUNT_ABSORBED] += caustics_keep(&parts, xyz(materials[hit.otherMaterial].colour));
                 }
             } else {
                 march.media = media;
             }
-            march.triangle = hit.triangle;
-            march.otherTriangle = hit.otherTriangle;
+            march_stand(&volume, &hit, &march);
             if (!march_next(&volume, position, d, &march, &hit)) {
                 ended = march.steps >= bound || march.media.depth > 0u;
                 break;

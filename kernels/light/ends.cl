@@ -38,7 +38,8 @@ kernel void ends_shade(MARCH_PARAMETERS, const vitrail_LightDesc light, global c
         }
         float3 seen = (float3)(0.0f);
         for (int k = 0; k < 2; ++k)
-            if (ends[k].weight.x + ends[k].weight.y + ends[k].weight.z > 0.0f) seen += glass_light(&volume, &light, map, caustic, place, &ends[k], width);
+            if (ends[k].weight.x + ends[k].weight.y + ends[k].weight.z > 0.0f)
+                seen += glass_light(&volume, &light, map, caustic, place, &ends[k], width, status);
         samples[pixel] = (float4)(seen, 1.0f);
     }
 }

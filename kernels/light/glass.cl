@@ -46,7 +46,15 @@ static void glass_trace(const Volume* volume, Crossing hit, float way, float3 di
     path.march = march_begin(false, 0u, MARCH_LEAST);
     path.march.media = volume->around;
     path.events = 0u;
-    path.over = edit_at(volume, hit.position - direction * (way / volume->grid->extent.x));
+    const float3 eye = hit.position - direction * (way / volume->grid->extent.x);
+    path.over = edit_at(volume, eye);
+    if (volume->edits && volume->around.depth > 0u) {
+        Crossing change;
+        if (edit_next(volume, eye, direction, &volume->around, path.over, way / volume->grid->extent.x, &change)) {
+            hit = change;
+            way = hit.t * volume->grid->extent.x;
+        }
+    }
     *fate = VITRAIL_RAY_LEFT;
     bool main = true;
     for (;;) {
@@ -65,8 +73,8 @@ static void glass_trace(const Volume* volume, Crossing hit, float way, float3 di
         }
         if (path.over != 0u && path.march.media.depth > 0u) before = path.over - 1u;
         if (before != VITRAIL_AIR) path.weight *= optics_absorb(volume->materials[before].absorption, way);
-        const bool opaque = volume->materials[hit.material].colour.w <= 0.5f, thin = march_thin(volume, hit.material),
-                   other = hit.otherMaterial != VITRAIL_AIR && volume->materials[hit.otherMaterial].colour.w <= 0.5f;
+        const bool opaque = march_opaque(volume, hit.material), thin = march_thin(volume, hit.material),
+                   other = hit.otherMaterial != VITRAIL_AIR && march_opaque(volume, hit.otherMaterial);
         Look look = optics_look(volume, &hit);
         if (!mirror) {
             // As it is judged: each material as a whole, polished.
@@ -96,8 +104,7 @@ static void glass_trace(const Volume* volume, Crossing hit, float way, float3 di
         }
         if (!ended) {
             path.position = hit.position;
-            path.march.triangle = hit.triangle;
-            path.march.otherTriangle = hit.otherTriangle;
+            march_stand(volume, &hit, &path.march);
             path.march.least = MARCH_LEAST;
             if (opaque || look.cover == 0.0f) {
                 deeper = path.march.media.depth > 0u;  // past what is not there
@@ -125,6 +132,7 @@ static void glass_trace(const Volume* volume, Crossing hit, float way, float3 di
                             *image = path;
                             image->weight *= reflected;
                             optics_mirror(&image->direction, n, hit.flat);
+                            image->march.back = !hit.inside;
                             path.weight *= 1.0f - reflected;
                         } else {
                             back = reflected > 0.5f;
@@ -133,6 +141,7 @@ static void glass_trace(const Volume* volume, Crossing hit, float way, float3 di
                 }
                 if (back) {
                     optics_mirror(&path.direction, n, hit.flat);
+                    path.march.back = !hit.inside;
                     deeper = hit.inside;
                 } else if (thin) {
                     // Straight on; rough, the mirror image of what a facet reflects.
@@ -145,10 +154,10 @@ static void glass_trace(const Volume* volume, Crossing hit, float way, float3 di
                 } else if (optics_cross(&path.direction, n, hit.flat, ratio)) {
                     path.march.media = media;
                     path.over = over;
-                    if (!hit.inside) path.weight *= look.colour;
+                    if (hit.edited ? hit.over != 0u : !hit.inside) path.weight *= look.colour;
                     if (hit.otherMaterial != VITRAIL_AIR && !hit.otherInside) path.weight *= xyz(volume->materials[hit.otherMaterial].colour);
                 } else {
-                    deeper = hit.inside;
+                    deeper = hit.inside || hit.edited;
                 }
             }
         }
@@ -199,7 +208,7 @@ kernel void glass_shade(MARCH_PARAMETERS, const vitrail_LightDesc light, global 
         float3 seen = (float3)(0.0f);
         for (int k = 0; k < ends.count; ++k)
             if (ends.end[k].weight.x + ends.end[k].weight.y + ends.end[k].weight.z > 0.0f)
-                seen += glass_light(&volume, &light, map, caustic, place, &ends.end[k], width);
+                seen += glass_light(&volume, &light, map, caustic, place, &ends.end[k], width, status);
         samples[pixel] = (float4)(seen, 1.0f);
     }
 }

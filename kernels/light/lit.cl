@@ -5,9 +5,6 @@
 #include "light/surroundings.cl"
 #pragma OPENCL FP_CONTRACT OFF
 
-#define STATUS_LOST 0     // left the grid inside glass
-#define STATUS_BOUNDED 1  // met the bound of events or steps
-
 // Where a path of light ends: at a diffuse point of the scene, or in the surroundings.
 typedef struct {
     float3 weight;        // of what is found there
@@ -18,7 +15,7 @@ typedef struct {
 } End;
 
 static float3 glass_light(const Volume* volume, const vitrail_LightDesc* light, global const float4* map, global const float4* caustic,
-                          float4 place, const End* end, float width) {
+                          float4 place, const End* end, float width, global uint* status) {
     float3 seen = (float3)(0.0f), weight = end->weight, position = end->position, normal = end->direction;
     if (!end->diffuse) {
         const float3 o = to_world(volume->grid, end->position), d = end->direction;
@@ -40,7 +37,9 @@ static float3 glass_light(const Volume* volume, const vitrail_LightDesc* light, 
     const bool gathered = caustic && !end->diffuse && normal.y > 0.0f;
     if (gathered) arriving += surroundings_caustic(caustic, place, to_world(volume->grid, position)) * 0.31830989f;
     if (facing > 0.0f) {
-        const float3 through = march_transmittance_from(volume, position + normal * 0.75f, xyz(light->toLight), &end->media);
+        bool bounded;
+        const float3 through = march_transmittance_from(volume, position + normal * 0.75f, xyz(light->toLight), &end->media, &bounded);
+        if (bounded) atomic_inc(status + STATUS_BOUNDED);
         // Behind glass there are the photons alone; past everything nothing is taken from the light.
         if (!gathered || through.x + through.y + through.z == 3.0f) arriving += xyz(light->irradiance) * (facing * 0.31830989f) * through;
     }

@@ -5,7 +5,8 @@
 #pragma OPENCL FP_CONTRACT OFF
 
 // One sample a pixel of the G-buffer: transmittance from the first surface point straight to the light; alpha 0 where there is none.
-kernel void shadow_shade(MARCH_PARAMETERS, const vitrail_LightDesc light, global float4* samples, ulong first, ulong count, uint perItem) {
+kernel void shadow_shade(MARCH_PARAMETERS, const vitrail_LightDesc light, global uint* status, global float4* samples, ulong first,
+                         ulong count, uint perItem) {
     const Volume volume = MARCH_VOLUME;
     const float3 toLight = xyz(light.toLight);
     FOR_RANGE(i, count, perItem) {
@@ -29,6 +30,9 @@ kernel void shadow_shade(MARCH_PARAMETERS, const vitrail_LightDesc light, global
             else
                 lit = false, alpha = 0.0f;
         }
-        samples[pixel] = (float4)(lit ? march_transmittance(&volume, position, toLight, inside, material) : (float3)(0.0f), alpha);
+        const March start = march_begin(inside && !march_thin(&volume, material), material, 0.0f);
+        bool bounded = false;
+        samples[pixel] = (float4)(lit ? march_transmittance_from(&volume, position, toLight, &start.media, &bounded) : (float3)(0.0f), alpha);
+        if (bounded) atomic_inc(status + STATUS_BOUNDED);
     }
 }

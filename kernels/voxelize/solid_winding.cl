@@ -197,8 +197,8 @@ INLINE void winding_pass(uint crossing, int* ofClosed, int* ofOpen) {
         *ofOpen += step;
 }
 
-// Sorts the crossings of each column (Shell 1959, gaps of Ciura 2001 and a factor of 2.25) and sets its bits as if caps had no winding number of their own.
-// ends: where the crossings of each column end.
+// Sorts the crossings of each column (Shell 1959, gaps of Ciura 2001 and a factor of 2.25) and sets its bits as if caps had no winding number of
+// their own. ends: where the crossings of each column end.
 kernel void solid_winding_columns(const vitrail_GridDesc grid, global const uint* ends, global uint* crossings, global uint* bits, ulong count,
                                   uint perItem) {
     FOR_RANGE(column, count, perItem) {

@@ -78,8 +78,8 @@ Counts expectedCounts(const Mesh& mesh, const Grid& grid, double safetyFactor) {
     return counts;
 }
 
-// The device enumerates what the pattern has, voxel by voxel: triangles below a cell, also with many points in it, of few cells, above 64 cells (halved),
-// partly outside.
+// The device enumerates what the pattern has, voxel by voxel: triangles below a cell, also with many points in it, of few cells, above 64 cells
+// (halved), partly outside.
 TEST(Points, AreTheCentroidsOfTheTessellation) {
     const Uint3 size(40, 33, 70);
     const Grid box = Grid::box(Float3(0), 1.0f, size), ortho = test::cameraGrids({Float3(0), Float3(size)}, size)[0];

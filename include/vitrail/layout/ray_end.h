@@ -1,5 +1,5 @@
-// vitrail/layout/ray_end.h: what became of a camera ray, what it is inside of, and how it crosses a boundary: one text for the device's methods, in floats, and
-// for the reference, in doubles.
+// vitrail/layout/ray_end.h: what became of a camera ray, what it is inside of, and how it crosses a boundary: one text for the device's methods,
+// in floats, and for the reference, in doubles.
 #ifndef VITRAIL_LAYOUT_RAY_END_H
 #define VITRAIL_LAYOUT_RAY_END_H
 #include "types.h"

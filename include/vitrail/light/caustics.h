@@ -49,7 +49,8 @@ struct CausticMap {
 
 /// The square lies on the ground under the light's image of the scene, two and a half diagonals of its box wide. A photon is refracted by
 /// Snell's law, totally reflected, weakened by 1 - F at each refraction and by Beer-Lambert until it meets the ground or anything opaque; the one
-/// that is reflected at a surface it also goes through is not followed. Sums are integers: the same bits for any number of threads, and every
+/// that is reflected at a surface it also goes through is not followed. Alpha lets its share through; rough surfaces count as polished, and what
+/// transmission between 0.5 and 1 keeps is lost. Sums are integers: the same bits for any number of threads, and every
 /// part of a photon is counted. Waits. Memory: as glassRays() of photons x photons pixels, 24 bytes a texel while it runs, 16 after.
 /// Throws Error (badInput, badOption, outOfMemory).
 CausticMap caustics(Queue& queue, const Scene& scene, const Caustics& effect);

@@ -42,8 +42,10 @@ public:
     /// own material; outside of them an edit shows nothing. Where materials change between cells light is refracted on the cells' faces, by the
     /// normal that the 5^3 cells around tell: exact where the change is flat and along the grid, within some degrees elsewhere, and rays
     /// within two cells of the region's edges may go wrong; no change of index, no error but half a cell of length. The last edit of a cell
-    /// holds. Returns how many cells were set. Nothing is voxelized, save a mesh that is the region. Memory: 2 bytes for each cell of the
-    /// smallest box of cells that holds all edits. Throws Error (badOption): an opaque material, a negative radius; (unsupported): more than
+    /// holds. Returns how many cells were set. Nothing is voxelized, save a mesh that is the region. Uploads the
+    /// materials and textures anew; a CausticMap of scene() knows nothing of edits. Memory: 2 bytes for each cell of the
+    /// smallest box of cells that holds all edits. Throws Error (badOption): a material that is opaque or thin walled, a region
+    /// that is missing or not finite, a negative radius; (unsupported): more than
     /// 65534 materials; (outOfMemory).
     std::uint64_t edit(Queue& queue, const EditRegion& region, const Material& material);
 

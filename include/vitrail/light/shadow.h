@@ -49,12 +49,13 @@ ShadowMethod shadowByName(std::string_view name, std::span<const std::string> op
 /// How much light arrives: for each pixel the transmittance from its first surface point (mesh or ground) straight to the light, without
 /// refraction; alpha 0 where there is none.
 ///
-/// Planes, Exact: the product of Beer-Lambert over the glass in between and of 1 - F at each crossing, 0 behind opaque voxels.
+/// Planes, Exact: the product of Beer-Lambert over the glass in between, of 1 - F at each crossing, of what alpha and thin walls let
+/// through; 0 behind opaque voxels.
 ///
 /// Counted, Uniform: exp of minus the sum of the absorptions of the voxels between light and point (eq. 1), without Fresnel's reflection,
 /// between the four lines of the light next to the point. The sum leaves out the slice in which the point's own surface lies, where eq. 1
 /// has it: a surface does not shade itself, nor what lies within the same slice; the ground, which is no voxel, has it. A voxel has one
-/// material, the lowest of its triangles'; what no line of the light meets casts no shadow. Bodies, closed and of transmission above 0.5, are
+/// material, the lowest of its triangles'; what no line of the light meets casts no shadow. Bodies (Material::isBody), closed, are
 /// measured in whole slices. Opaque layers let 1e-7 through.
 struct Shadow {
     ShadowMethod method{};
@@ -63,8 +64,9 @@ struct Shadow {
     bool lit = false;           ///< Counted and Uniform: not the transmittance but the scene in this light and the environment's, matt
 };
 
-/// Limits, memory and errors as of shade(..., Glass). Counted, Uniform: memory of the voxels of Sampled with count and material, 16 bytes each of
-/// them and each column and, with bodies of glass, their solid bits and 16 bytes more a voxel.
+/// Planes, Exact: rays that meet the bound of steps are dark, and counted. Memory and errors as of shade(..., Glass). Counted, Uniform: memory
+/// of the voxels of Sampled with count and material, 16 bytes each of them and each column and, with bodies of glass, their solid bits and 16
+/// bytes more a voxel.
 Image shade(Queue& queue, const Scene& scene, const Camera& camera, const Shadow& effect);
 
 }  // namespace v0

@@ -16,7 +16,8 @@ struct PhotonSums {
 };
 
 /// One photon through the centre of each pixel of `light`, the rules of vitrail::caustics() with the triangles' own crossings, onto a square of
-/// texels x texels of `edge` at y = `groundHeight` whose low corner is `low`. Embree (robust) finds triangles; all else is doubles. All cores.
+/// texels x texels of `edge` at y = `groundHeight` whose low corner is `low`. One body at a time, and no alpha. Embree (robust) finds
+/// triangles; all else is doubles. All cores. Throws Error (badInput): a material out of range.
 PhotonSums caustics(const Scene& scene, const Camera& light, double groundHeight, Float2 low, double edge, std::uint32_t texels);
 
 }  // namespace reference

@@ -22,13 +22,16 @@ struct Material {
     float indexOfRefraction = 1.5f;       ///< 1 to 3
     float roughness = 0.0f;               ///< of the surface, 0 polished to 1
     Float3 emission{0.0f};                ///< linear RGB
-    float thickness = 1.0f;               ///< 0: thin walled, each surface a wall without refraction; else a body, as thick as its triangles are apart
+    float thickness = 1.0f;               ///< 0: thin walled, each surface a wall without refraction; else a body between its triangles
     float attenuationDistance = 0.0f;     ///< scene units after which `attenuationColour` is left; 0: infinite
     Float3 attenuationColour{1.0f};       ///< linear RGB, above 0 to 1
     int baseColourTexture = -1;           ///< index into Scene::textures, or -1
     int surfaceTexture = -1;              ///< the same; its red multiplies `transmission`, its green `roughness`
     Float2 textureOffset{0.0f}, textureScale{1.0f};  ///< KHR_texture_transform of the textures
     float textureRotation = 0.0f;         ///< radians, counter-clockwise
+
+    /// Glass with an inside.
+    bool isBody() const { return transmission > 0.5f && thickness != 0.0f; }
 
     /// Absorption coefficient of Beer-Lambert per scene unit and channel: -ln(attenuationColour) / attenuationDistance.
     Float3 absorption() const;

@@ -1,9 +1,9 @@
 // vitrail/volume/voxels.h: the result of every voxelizer: one bit a voxel, a rank directory, and channels that hold one entry per
 // *occupied* voxel (systems.md 2).
 //
-// Bits: vitrail/layout/grid.h, dense, or bricks where that takes less memory (bricks()). Rank: entry g is the number of occupied cells before group g of 512 cells (16 words); the index of an
-// occupied voxel is rank[g] + population count of the bits before it in the group. 32 bits: at most 2^32 - 1 occupied voxels.
-// Channels combine the fragments (triangle, voxel) of a voxel by rules that do not depend on order:
+// Bits: vitrail/layout/grid.h, dense, or bricks where that takes less memory (bricks()). Rank: entry g is the number of occupied cells before
+// group g of 512 cells (16 words); the index of an occupied voxel is rank[g] + population count of the bits before it in the group. 32 bits: at
+// most 2^32 - 1 occupied voxels. Channels combine the fragments (triangle, voxel) of a voxel by rules that do not depend on order:
 //   count     u32, how many triangles marked the voxel
 //   normal    mean of the unit normals of these triangles, each triangle once, summed in 64-bit fixed point with 24 fractional
 //             bits (no overflow below 2^39 triangles), stored as two signed 16-bit octahedral coordinates; error below 0.004 degrees;

@@ -23,7 +23,8 @@ struct PerSlice {
 
 /// Voxels and channels of Sampled, bit for bit, with as many launches as the grid has slices (twice as many with channels), which can be
 /// interrupted between them. With the interior: voxels and report().openColumns of Solid, bit for bit, without channels (Error, unsupported);
-/// all triangles before a slice are drawn for it, one launch more counts open columns, and bricks are taken behind bodies too. Waits, memory and errors as voxelize(..., Conservative).
+/// all triangles before a slice are drawn for it, one launch more counts open columns, and bricks are taken behind bodies too. Waits, memory and
+/// errors as voxelize(..., Conservative).
 Voxels voxelize(Queue& queue, const MeshInput& mesh, const Grid& grid, const PerSlice& method);
 std::uint64_t estimate(const MeshInput& mesh, const Grid& grid, const PerSlice& method);
 

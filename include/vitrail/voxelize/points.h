@@ -46,9 +46,10 @@ struct Points {
 /// the quadratic ones, colours those of the triangle; box and orthographic grids. Error (badInput) without normals, (unsupported) on
 /// perspective grids. With heights a point moves along the quadratic normal, and the factor of a side grows by what the steepest pixels under
 /// the triangle and the turn of its normal can move points apart (Fei keeps the factors of the triangle, and leaves holes on steep slopes):
-/// points lay within 0.002 cell of the moved surface on what was tried, and what is missing of it is what points miss of a mesh of it; normals of channels stay
-/// those of the surface that is moved. The map is copied to the device at each call, 16 bytes a pixel. Error (badInput): heights without PN
-/// triangles, without texture coordinates, without pixels, or not finite. Waits, memory and errors as voxelize(..., Conservative).
+/// points lay within 0.002 cell of the moved surface on what was tried, and what is missing of it is what points miss of a mesh of it; normals
+/// of channels stay those of the surface that is moved. The map is copied to the device at each call, 16 bytes a pixel. Error (badInput):
+/// heights without PN triangles, without texture coordinates, without pixels, or not finite. Waits, memory and errors as voxelize(...,
+/// Conservative).
 Voxels voxelize(Queue& queue, const MeshInput& mesh, const Grid& grid, const Points& method);
 std::uint64_t estimate(const MeshInput& mesh, const Grid& grid, const Points& method);
 

@@ -21,8 +21,8 @@ struct Solid {
 /// of slice k. Crossings are those of Sampled (top-left rule, the same arithmetic for all triangles that share an edge), so a closed surface
 /// is crossed an even number of times, whatever is rounded, and parts outside the grid count. Where bodies overlap the rule is even-odd. On
 /// a mesh that is not closed columns can stay open: report().openColumns counts them, and in them the result is a guess (solid_winding.h
-/// takes such meshes). Equal to a plain scan in double precision bit for bit. Any grid. No channels. Enqueues and returns. Memory: estimate(), with a bit a column. Throws
-/// Error (badInput, outOfMemory) before any launch.
+/// takes such meshes). Equal to a plain scan in double precision bit for bit. Any grid. No channels. Enqueues and returns. Memory: estimate(),
+/// with a bit a column. Throws Error (badInput, outOfMemory) before any launch.
 Voxels voxelize(Queue& queue, const MeshInput& mesh, const Grid& grid, const Solid& method);
 std::uint64_t estimate(const MeshInput& mesh, const Grid& grid, const Solid& method);
 
