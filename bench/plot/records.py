@@ -31,9 +31,7 @@ ERRORS = ("missing", "extra", "missingThin", "leaks", "watertight", "wrong", "wr
 
 
 def _from_benchmark(document):
-    found = [b for b in document["benchmarks"] if b.get("aggregate_name") == "median"]
-    if not found:  # one repetition: no aggregates
-        found = [b for b in document["benchmarks"] if b.get("run_type") == "iteration"]
+    found = [b for b in document["benchmarks"] if b.get("aggregate_name") == "median" or b.get("repetitions") == 1]
     found.sort(key=lambda one: one.get("family_index", 0))  # as registered: they ran, and stand in the file, in random order
     points = []
     for one in found:
