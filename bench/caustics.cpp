@@ -26,7 +26,9 @@ Scene sceneOf(Mesh mesh) {
     return scene;
 }
 
-float groundOf(const Scene& scene) { return scene.mesh.bounds().low.y - 0.1f * glm::length(scene.mesh.bounds().high - scene.mesh.bounds().low); }
+float groundOf(const Scene& scene) {
+    return scene.mesh.bounds().low.y - 0.1f * glm::length(scene.mesh.bounds().high - scene.mesh.bounds().low);
+}
 
 CausticMap mapOf(Queue& queue, const Scene& scene, const GlassMethod& method, std::uint32_t photons) {
     return caustics(queue, scene, {.method = method, .ground = {.height = groundOf(scene), .automatic = false}, .photons = photons});
@@ -71,7 +73,8 @@ int main(int argc, char** argv) {
                 if (const auto path = dataMesh(std::string("meshes/") + file)) scenes.emplace(path->stem().string(), sceneOf(load(*path)));
             for (const auto& [name, scene] : scenes)
                 for (const std::uint32_t photons : {256u, 1024u})
-                    for (const GlassMethod& method : {GlassMethod(Planes{.resolution = 128}), GlassMethod(Planes{}), GlassMethod(Exact{})}) {
+                    for (const GlassMethod& method :
+                         {GlassMethod(Planes{.resolution = 128}), GlassMethod(Planes{}), GlassMethod(Exact{})}) {
                         const bool coarse = std::holds_alternative<Planes>(method) && std::get<Planes>(method).resolution == 128.0f;
                         const std::string row = std::holds_alternative<Planes>(method) ? "planes" : "exact",
                                           size = name + "/" + std::to_string(photons);

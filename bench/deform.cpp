@@ -108,7 +108,8 @@ std::vector<Input> inputs() {
     std::vector<Input> all;
     all.push_back({"torus", "displace", [](Queue& queue) { return std::make_unique<Waves>(queue, makeShape("torus")); }});
     const auto add = [&](const char* name, const char* how, auto make) {
-        if (const auto found = dataMesh(name)) all.push_back({found->stem().string(), how, [make, path = *found](Queue& queue) { return make(queue, path); }});
+        if (const auto found = dataMesh(name))
+            all.push_back({found->stem().string(), how, [make, path = *found](Queue& queue) { return make(queue, path); }});
     };
     for (const char* name : {"gltf/CesiumMan.glb", "gltf/Fox.glb"})
         add(name, "skin", [](Queue& queue, const auto& path) { return std::make_unique<Figure>(queue, path); });

@@ -100,7 +100,8 @@ void run(benchmark::State& state, const Input& input, const Rates& rates, Frame&
     state.counters["triangles"] = static_cast<double>(input.scene.mesh.triangleCount());
 }
 
-void benchVoxels(benchmark::State& state, Queue& queue, const Input& input, const Truth& truth, const GlassMethod& method, std::uint32_t resolution) {
+void benchVoxels(benchmark::State& state, Queue& queue, const Input& input, const Truth& truth, const GlassMethod& method,
+                 std::uint32_t resolution) {
     Rates rates;
     for (unsigned k = 0; k < kViews; ++k) rates.add(glassRays(queue, input.scene, view(input.scene, k), method).ends, truth, k);
     Scene scene = input.scene;
@@ -119,8 +120,8 @@ void benchVoxels(benchmark::State& state, Queue& queue, const Input& input, cons
             surface.voxels.mip();
             queue.finish();
             bytes = static_cast<double>(surface.voxels.bits().bytes() + surface.voxels.bricks().bytes() + surface.voxels.rank().bytes() +
-                                        surface.voxels.mip().bytes() + surface.surface.bytes() + surface.planes.bytes() + solid.bits().bytes() +
-                                        solid.bricks().bytes());
+                                        surface.voxels.mip().bytes() + surface.surface.bytes() + surface.planes.bytes() +
+                                        solid.bits().bytes() + solid.bricks().bytes());
             occupied = static_cast<double>(surface.voxels.occupied());
         } else {
             const VoxelLists lists = voxelizeLists(queue, mesh, grid);
@@ -168,31 +169,32 @@ void benchEmbree(benchmark::State& state, const Input& input, const Truth& truth
 }  // namespace
 
 int main(int argc, char** argv) {
-    return benchMain(argc, argv,
-                     {"--benchmark_repetitions=5", "--benchmark_enable_random_interleaving=true", "--benchmark_report_aggregates_only=true",
-                      "--benchmark_min_time=0.5"},
-                     [](Queue& queue) {
-                         static std::vector<Input> meshes = inputs();
-                         static std::map<std::string, Truth> truths;
-                         for (Input& input : meshes) {
-                             input.scene.materials[0].indexOfRefraction = kIndex;
-                             const auto truth = [&input]() -> const Truth& { return truths.try_emplace(input.name, input.scene).first->second; };
-                             for (const std::uint32_t resolution : {64u, 128u, 256u, 512u})
-                                 for (const Method& row : methods()) {
-                                     const std::string size = std::to_string(resolution);
-                                     const std::vector<std::string> options = atResolution(row, size);
-                                     if (row.name != Planes::name && row.name != Exact::name) continue;
-                                     addBenchmark(input.name + "/" + size + "/" + std::string(row.name),
-                                                  [&queue, &input, truth, resolution, method = glassByName(row.name, options)](benchmark::State& state) {
-                                                      benchVoxels(state, queue, input, truth(), method, resolution);
-                                                  });
-                                 }
-                             const std::pair<const char*, native::EmbreeBuild> builds[] = {
-                                 {"standard", native::EmbreeBuild::standard}, {"dynamic", native::EmbreeBuild::dynamic}, {"refit", native::EmbreeBuild::refit}};
-                             for (const auto& [name, how] : builds)
-                                 addBenchmark(input.name + "/0/embree_" + name, [&input, truth, how](benchmark::State& state) {
-                                     benchEmbree(state, input, truth(), how);
-                                 });
-                         }
-                     });
+    return benchMain(
+        argc, argv,
+        {"--benchmark_repetitions=5", "--benchmark_enable_random_interleaving=true", "--benchmark_report_aggregates_only=true",
+         "--benchmark_min_time=0.5"},
+        [](Queue& queue) {
+            static std::vector<Input> meshes = inputs();
+            static std::map<std::string, Truth> truths;
+            for (Input& input : meshes) {
+                input.scene.materials[0].indexOfRefraction = kIndex;
+                const auto truth = [&input]() -> const Truth& { return truths.try_emplace(input.name, input.scene).first->second; };
+                for (const std::uint32_t resolution : {64u, 128u, 256u, 512u})
+                    for (const Method& row : methods()) {
+                        const std::string size = std::to_string(resolution);
+                        const std::vector<std::string> options = atResolution(row, size);
+                        if (row.name != Planes::name && row.name != Exact::name) continue;
+                        addBenchmark(input.name + "/" + size + "/" + std::string(row.name),
+                                     [&queue, &input, truth, resolution, method = glassByName(row.name, options)](benchmark::State& state) {
+                                         benchVoxels(state, queue, input, truth(), method, resolution);
+                                     });
+                    }
+                const std::pair<const char*, native::EmbreeBuild> builds[] = {{"standard", native::EmbreeBuild::standard},
+                                                                              {"dynamic", native::EmbreeBuild::dynamic},
+                                                                              {"refit", native::EmbreeBuild::refit}};
+                for (const auto& [name, how] : builds)
+                    addBenchmark(input.name + "/0/embree_" + name,
+                                 [&input, truth, how](benchmark::State& state) { benchEmbree(state, input, truth(), how); });
+            }
+        });
 }

@@ -6,9 +6,9 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
-#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
@@ -32,7 +32,6 @@ namespace {
 
 using namespace vitrail;
 
-
 struct Input {
     std::string name;
     Scene scene;
@@ -49,7 +48,8 @@ Input inputOf(const std::string& name, Mesh mesh) {
 std::vector<Input> inputs() {
     std::vector<Input> all;
     for (const char* shape : {"torus", "box", "knot"}) all.push_back(inputOf(shape, makeShape(shape)));
-    for (const char* file : {"teapot.obj", "hand_closed.obj", "fertility.off", "bunny_hr.obj", "horse.ply", "dragon_vrip_res2.ply", "scorpion.obj", "igea.ply"}) {
+    for (const char* file : {"teapot.obj", "hand_closed.obj", "fertility.off", "bunny_hr.obj", "horse.ply", "dragon_vrip_res2.ply",
+                             "scorpion.obj", "igea.ply"}) {
         if (const auto path = dataMesh(std::string("meshes/") + file)) all.push_back(inputOf(path->stem().string(), load(*path)));
     }
     return all;
@@ -98,7 +98,7 @@ void bench(benchmark::State& state, Queue& queue, const Scene& scene, const Trut
 // Tables 2 and 3 of Chang et al. 2013.
 
 struct Printed {
-    std::array<double, 7> rates;   ///< 1-surf, 2-surf, m-surf(no), H1(2.5), H1(5), H1,2(0 %), H1,2(5 %)
+    std::array<double, 7> rates;       ///< 1-surf, 2-surf, m-surf(no), H1(2.5), H1(5), H1,2(0 %), H1,2(5 %)
     std::array<const char*, 4> times;  ///< frames per second: 1-surf, 2-surf, m-surf, rays
 };
 struct TableModel {
@@ -147,11 +147,13 @@ void printTables(Queue& queue) {
         return found == all.end() ? nullptr : &*found;
     };
     for (const float index : {1.14f, 1.3f}) {
-        std::printf("\nCorrect rates (dot > 0.9962) at index of refraction %g, 256 voxels, %u x %u pixels, means of %u views; in brackets Table 3\n\n",
-                    double(index), kPixels, kPixels, kViews);
-        std::puts("| mesh (theirs) | `one` | `two` | `two`, thickness=1 | `paper`, no heuristic | H1 2.5 | H1 5 | H1 best | H1 best, H2 5 % | and filter "
-                  "| `plane` | `planes` | `exact` | order |\n"
-                  "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|");
+        std::printf(
+            "\nCorrect rates (dot > 0.9962) at index of refraction %g, 256 voxels, %u x %u pixels, means of %u views; in brackets Table 3\n\n",
+            double(index), kPixels, kPixels, kViews);
+        std::puts(
+            "| mesh (theirs) | `one` | `two` | `two`, thickness=1 | `paper`, no heuristic | H1 2.5 | H1 5 | H1 best | H1 best, H2 5 % | and filter "
+            "| `plane` | `planes` | `exact` | order |\n"
+            "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|");
         for (const TableModel& model : kTableModels) {
             const Input* input = find(model);
             if (input == nullptr) continue;
@@ -191,11 +193,13 @@ void printTables(Queue& queue) {
             std::fflush(stdout);
         }
     }
-    std::printf("\nFrames per second at 1.14, 256 voxels, %u x %u pixels, voxels included (rays: the reference on all cores, its tree included); in "
-                "brackets Table 2\n\n",
-                kPixels, kPixels);
-    std::puts("| mesh (theirs) | triangles | `one` | `two` | `two`, thickness=1 | `paper` | `plane` | `planes` | `exact` | rays |\n"
-              "|---|---|---|---|---|---|---|---|---|---|");
+    std::printf(
+        "\nFrames per second at 1.14, 256 voxels, %u x %u pixels, voxels included (rays: the reference on all cores, its tree included); in "
+        "brackets Table 2\n\n",
+        kPixels, kPixels);
+    std::puts(
+        "| mesh (theirs) | triangles | `one` | `two` | `two`, thickness=1 | `paper` | `plane` | `planes` | `exact` | rays |\n"
+        "|---|---|---|---|---|---|---|---|---|---|");
     for (const TableModel& model : kTableModels) {
         const Input* input = find(model);
         if (input == nullptr) continue;
@@ -241,23 +245,25 @@ int main(int argc, char** argv) {
         }
         return 0;
     }
-    return benchMain(argc, argv, {"--benchmark_repetitions=3", "--benchmark_report_aggregates_only=true", "--benchmark_min_time=0.1"}, [](Queue& queue) {
-        static const std::vector<Input> meshes = inputs();
-        static std::map<std::string, Truth> truths;
-        for (const Input& input : meshes)
-            for (const char* index : {"1.14", "1.3", "1.5"})
-                for (const char* resolution : {"128", "256", "512"})
-                    for (const Method& row : methods()) {
-                        const bool plain = std::string_view(index) == "1.14";
-                        if (row.family != Family::glass || (!plain && std::string_view(resolution) != "256")) continue;
-                        const std::vector<std::string> options = atResolution(row, resolution);
-                        if (options.empty() && std::string_view(resolution) != "256") continue;  // once
-                        const std::string name = input.name + "/" + resolution + "/" + std::string(row.name) + (plain ? "" : std::string("/ior=") + index);
-                        addBenchmark(name, [&queue, &input, index, method = glassByName(row.name, options)](benchmark::State& state) {
-                            Scene scene = input.scene;
-                            scene.materials[0].indexOfRefraction = std::stof(index);
-                            bench(state, queue, scene, truths.try_emplace(input.name + index, scene).first->second, method);
-                        });
-                    }
-    });
+    return benchMain(
+        argc, argv, {"--benchmark_repetitions=3", "--benchmark_report_aggregates_only=true", "--benchmark_min_time=0.1"}, [](Queue& queue) {
+            static const std::vector<Input> meshes = inputs();
+            static std::map<std::string, Truth> truths;
+            for (const Input& input : meshes)
+                for (const char* index : {"1.14", "1.3", "1.5"})
+                    for (const char* resolution : {"128", "256", "512"})
+                        for (const Method& row : methods()) {
+                            const bool plain = std::string_view(index) == "1.14";
+                            if (row.family != Family::glass || (!plain && std::string_view(resolution) != "256")) continue;
+                            const std::vector<std::string> options = atResolution(row, resolution);
+                            if (options.empty() && std::string_view(resolution) != "256") continue;  // once
+                            const std::string name =
+                                input.name + "/" + resolution + "/" + std::string(row.name) + (plain ? "" : std::string("/ior=") + index);
+                            addBenchmark(name, [&queue, &input, index, method = glassByName(row.name, options)](benchmark::State& state) {
+                                Scene scene = input.scene;
+                                scene.materials[0].indexOfRefraction = std::stof(index);
+                                bench(state, queue, scene, truths.try_emplace(input.name + index, scene).first->second, method);
+                            });
+                        }
+        });
 }

@@ -39,7 +39,8 @@ std::vector<Contender> contenders(Queue& queue) {
     std::vector<Contender> all;
     for (const Method& row : methods())
         if (row.family == Family::glass && row.role == Role::product)
-            all.push_back({std::string(row.name), [&queue, &row](benchmark::State& state, const Scene& scene, const Camera& camera, float resolution) {
+            all.push_back({std::string(row.name),
+                           [&queue, &row](benchmark::State& state, const Scene& scene, const Camera& camera, float resolution) {
                                const std::vector<std::string> options = atResolution(row, std::to_string(static_cast<int>(resolution)));
                                GlassRays rays = glassRays(queue, scene, camera, glassByName(row.name, options));
                                state.SetIterationTime(rays.report.kernelMs * 1e-3);
@@ -120,8 +121,7 @@ Mesh hollow(float wall) {
     const float inner = 1 - wall * 2 / kResolution;
     const Float3 centre = (outer.bounds().low + outer.bounds().high) * 0.5f;
     const auto first = static_cast<std::uint32_t>(outer.positions.size());
-    for (std::size_t i = 0; i < outer.positions.size(); ++i)
-        mesh.positions.push_back(centre + (outer.positions[i] - centre) * inner);
+    for (std::size_t i = 0; i < outer.positions.size(); ++i) mesh.positions.push_back(centre + (outer.positions[i] - centre) * inner);
     for (std::size_t i = 0; i < outer.indices.size(); i += 3)
         for (const std::size_t k : {0, 2, 1}) mesh.indices.push_back(first + outer.indices[i + k]);
     return mesh;
@@ -159,17 +159,17 @@ Mesh bent(int frame) {
 void addAll(const Contender& one) {
     if (one.name != "reference") {
         for (const double index : {1.0, 1.05, 1.1, 1.14, 1.15, 1.1547, 1.16, 1.17, 1.2, 1.3, 1.4, 1.5, 1.7, 2.0, 2.4})
-            addBenchmark("index/" + text(index) + "/" + one.name,
-                         [one, index](benchmark::State& state) { judge(state, one, sceneOf(prism(), static_cast<float>(index)), kResolution); })
-                ->Iterations(1);
+            addBenchmark("index/" + text(index) + "/" + one.name, [one, index](benchmark::State& state) {
+                judge(state, one, sceneOf(prism(), static_cast<float>(index)), kResolution);
+            })->Iterations(1);
         for (const float wall : {0.1f, 0.25f, 0.5f, 0.7f, 0.85f, 1.0f, 1.2f, 1.5f, 2.0f, 3.0f, 4.0f})
-            addBenchmark("wall/" + text(double(wall)) + "/" + one.name,
-                         [one, wall](benchmark::State& state) { judge(state, one, sceneOf(hollow(wall), 1.14f), kResolution); })
-                ->Iterations(1);
+            addBenchmark("wall/" + text(double(wall)) + "/" + one.name, [one, wall](benchmark::State& state) {
+                judge(state, one, sceneOf(hollow(wall), 1.14f), kResolution);
+            })->Iterations(1);
         for (const float resolution : {16.0f, 32.0f, 64.0f, 128.0f, 256.0f, 512.0f})
-            addBenchmark("resolution/" + text(double(resolution)) + "/" + one.name,
-                         [one, resolution](benchmark::State& state) { judge(state, one, sceneOf(makeShape("knot"), 1.14f), resolution); })
-                ->Iterations(1);
+            addBenchmark("resolution/" + text(double(resolution)) + "/" + one.name, [one, resolution](benchmark::State& state) {
+                judge(state, one, sceneOf(makeShape("knot"), 1.14f), resolution);
+            })->Iterations(1);
         for (int part = 1; part <= 16; ++part)
             addBenchmark("offset/" + std::to_string(part) + "/" + one.name, [one, part](benchmark::State& state) {
                 const Scene still = sceneOf(onMovedGrid(0), 1.14f);

@@ -73,8 +73,8 @@ void placements(Queue& queue) {
         const reference::Truth touched = reference::conservative(input->mesh, grid), thin = reference::thin(input->mesh, grid);
         const auto row = [&](const char* where, const Voxelizer& method) {
             const Voxels voxels = voxelize(queue, mesh, grid, method);
-            std::printf("| %s | 256 | %s | %.2f | %.2f | %.3f |\n", input->name.c_str(), where, timeOf(queue, mesh, grid, method), missing(voxels, touched),
-                        missing(voxels, thin));
+            std::printf("| %s | 256 | %s | %.2f | %.2f | %.3f |\n", input->name.c_str(), where, timeOf(queue, mesh, grid, method),
+                        missing(voxels, touched), missing(voxels, thin));
         };
         using Placement = PlacedPoints::Placement;
         row("centroids (`points`)", Points{});
@@ -97,7 +97,8 @@ void safety(Queue& queue) {
             const Voxels voxels = voxelize(queue, mesh, grid, Points{.safetyFactor = gamma});
             std::printf("| %s | 256 | %g | %.2f | %llu | %.2f | %.3f |\n", input->name.c_str(), double(gamma),
                         timeOf(queue, mesh, grid, Points{.safetyFactor = gamma}),
-                        static_cast<unsigned long long>(pointsOf(queue, mesh, grid, gamma)), missing(voxels, touched), missing(voxels, thin));
+                        static_cast<unsigned long long>(pointsOf(queue, mesh, grid, gamma)), missing(voxels, touched),
+                        missing(voxels, thin));
         }
     }
 }
@@ -111,15 +112,17 @@ void patches(Queue& queue) {
     const Grid grid = Grid::fit(mesh.bounds(), 256);
     for (const bool curved : {false, true}) {
         const Points method{.surface = curved ? Points::Surface::pnTriangles : Points::Surface::triangles};
-        std::printf("| %s | %u | %s | 256 | %.2f | %llu |\n", input->name.c_str(), mesh.triangleCount(), curved ? "PN triangles" : "triangles",
-                    timeOf(queue, mesh, grid, method), static_cast<unsigned long long>(voxelize(queue, mesh, grid, method).occupied()));
+        std::printf("| %s | %u | %s | 256 | %.2f | %llu |\n", input->name.c_str(), mesh.triangleCount(),
+                    curved ? "PN triangles" : "triangles", timeOf(queue, mesh, grid, method),
+                    static_cast<unsigned long long>(voxelize(queue, mesh, grid, method).occupied()));
     }
 }
 
 /// Of eq. 4 and 5, with N63 = 5953, the triangles of a uniform factor of 63.
 void simple(Queue& queue) {
-    std::puts("| mesh | triangles | grid | ms | missing of conservative, % | points | of them by eq. 5 | passes by eq. 4 | halvings |\n"
-              "|---|---|---|---|---|---|---|---|---|");
+    std::puts(
+        "| mesh | triangles | grid | ms | missing of conservative, % | points | of them by eq. 5 | passes by eq. 4 | halvings |\n"
+        "|---|---|---|---|---|---|---|---|---|");
     std::vector<Input> inputs;
     inputs.push_back({"box", makeShape("box")});
     inputs.push_back({"torus", makeShape("torus")});
@@ -141,14 +144,17 @@ void simple(Queue& queue) {
             for (double factor = 1.15 * longest; factor > 64; factor /= 2) ++halvings;
             std::printf("| %s | %.0f | %u | %.2f | %.2f | %llu | %.0f | %.2f | %d |\n", input.name.c_str(), triangles, resolution,
                         timeOf(queue, mesh, grid, Points{}), missing(voxelize(queue, mesh, grid, Points{}), touched),
-                        static_cast<unsigned long long>(pointsOf(queue, mesh, grid, 1)), expected, std::log(expected) / std::log(5953.0), halvings);
+                        static_cast<unsigned long long>(pointsOf(queue, mesh, grid, 1)), expected, std::log(expected) / std::log(5953.0),
+                        halvings);
         }
     }
 }
 
 void meshes(Queue& queue) {
-    std::puts("| mesh | triangles | grid | `points`, ms | `conservative`, ms | missing of conservative, % | of thin, % |\n|---|---|---|---|---|---|---|");
-    for (const auto& [name, times] : {std::pair("dragon_vrip_res2.ply", 1u), std::pair("turbineblade.ply", 0u), std::pair("xyzrgb_dragon.obj", 4u)}) {
+    std::puts(
+        "| mesh | triangles | grid | `points`, ms | `conservative`, ms | missing of conservative, % | of thin, % |\n|---|---|---|---|---|---|---|");
+    for (const auto& [name, times] :
+         {std::pair("dragon_vrip_res2.ply", 1u), std::pair("turbineblade.ply", 0u), std::pair("xyzrgb_dragon.obj", 4u)}) {
         const std::optional<Input> input = file(name, times);
         if (!input) continue;
         const DeviceMesh mesh(queue, input->mesh);
@@ -183,16 +189,18 @@ void stages(Queue& queue) {
 
 /// Points mark no cell that Conservative does not, so what is missing of it is the difference of their counts.
 void sibenik(Queue& queue) {
-    std::puts("| mesh | triangles | grid | `points`, ms | voxels | `conservative`, ms | voxels | missing of it, % |\n|---|---|---|---|---|---|---|---|");
+    std::puts(
+        "| mesh | triangles | grid | `points`, ms | voxels | `conservative`, ms | voxels | missing of it, % |\n|---|---|---|---|---|---|---|---|");
     const std::filesystem::path path = test::dataFile("meshes/sibenik/sibenik.bin");
     if (path.empty()) return;
     const Mesh cathedral = test::readPlain(path);
     const DeviceMesh mesh(queue, cathedral);
     const Grid grid = Grid::fit(mesh.bounds(), 1792);
-    const std::uint64_t marked = voxelize(queue, mesh, grid, Points{}).occupied(), touched = voxelize(queue, mesh, grid, Conservative{}).occupied();
+    const std::uint64_t marked = voxelize(queue, mesh, grid, Points{}).occupied(),
+                        touched = voxelize(queue, mesh, grid, Conservative{}).occupied();
     std::printf("| sibenik | %u | 1792 | %.1f | %llu | %.1f | %llu | %.2f |\n", mesh.triangleCount(), timeOf(queue, mesh, grid, Points{}),
-                static_cast<unsigned long long>(marked), timeOf(queue, mesh, grid, Conservative{}), static_cast<unsigned long long>(touched),
-                100.0 * static_cast<double>(touched - marked) / static_cast<double>(touched));
+                static_cast<unsigned long long>(marked), timeOf(queue, mesh, grid, Conservative{}),
+                static_cast<unsigned long long>(touched), 100.0 * static_cast<double>(touched - marked) / static_cast<double>(touched));
 }
 
 void bias(Queue& queue) {
@@ -224,7 +232,8 @@ void watertight(Queue& queue) {
     std::puts("| mesh | 64 | 128 | 256 |\n|---|---|---|---|");
     std::vector<Input> inputs;
     inputs.push_back({"torus", makeShape("torus")});
-    for (const char* name : {"spot.obj", "bunny_hr.obj", "horse.ply", "fertility.off", "xyzrgb_dragon.obj", "turbineblade.ply", "hand_closed.obj"})
+    for (const char* name :
+         {"spot.obj", "bunny_hr.obj", "horse.ply", "fertility.off", "xyzrgb_dragon.obj", "turbineblade.ply", "hand_closed.obj"})
         if (std::optional<Input> input = file(name)) inputs.push_back(std::move(*input));
     for (const Input& input : inputs) {
         const DeviceMesh mesh(queue, input.mesh);
@@ -254,8 +263,9 @@ void factors(Queue& queue) {
     std::puts("| mesh | triangles | grid | 0.18: factor, measured by asked | 0.1 | 0.05 | 0.03 |\n|---|---|---|---|---|---|---|");
     std::vector<Input> inputs;
     for (const Shape& shape : shapes()) inputs.push_back({std::string(shape.name), makeShape(shape.name)});
-    for (const char* name : {"bun_zipper.ply", "dragon_vrip_res4.ply", "spot.obj", "teapot.ply", "torus.obj", "horse.ply", "fertility.off", "igea.ply",
-                             "falconstatue.obj", "skull.obj", "scorpion.obj", "hand_closed.obj", "bunny_hr.obj", "turbineblade.ply", "xyzrgb_dragon.obj"})
+    for (const char* name :
+         {"bun_zipper.ply", "dragon_vrip_res4.ply", "spot.obj", "teapot.ply", "torus.obj", "horse.ply", "fertility.off", "igea.ply",
+          "falconstatue.obj", "skull.obj", "scorpion.obj", "hand_closed.obj", "bunny_hr.obj", "turbineblade.ply", "xyzrgb_dragon.obj"})
         if (std::optional<Input> input = file(name)) inputs.push_back(std::move(*input));
     double most = 0, least = 1;
     unsigned all = 0, within = 0;
@@ -291,9 +301,9 @@ void factors(Queue& queue) {
 }
 
 using Table = void (*)(Queue&);
-constexpr std::pair<const char*, Table> kTables[] = {{"placements", placements}, {"patches", patches}, {"safety", safety}, {"simple", simple},
-                                                     {"meshes", meshes},         {"bias", bias},       {"watertight", watertight},
-                                                     {"factors", factors},       {"stages", stages},   {"sibenik", sibenik}};
+constexpr std::pair<const char*, Table> kTables[] = {
+    {"placements", placements}, {"patches", patches}, {"safety", safety}, {"simple", simple},  {"meshes", meshes}, {"bias", bias},
+    {"watertight", watertight}, {"factors", factors}, {"stages", stages}, {"sibenik", sibenik}};
 
 }  // namespace
 
@@ -303,7 +313,10 @@ int main(int argc, char** argv) {
         Queue queue(device);
         for (int i = 1; i < argc; ++i)
             if (std::ranges::none_of(kTables, [&](const auto& table) { return std::string(argv[i]) == table.first; })) {
-                std::fprintf(stderr, "bench_points: there is no table \"%s\"; placements, patches, safety, simple, meshes, bias, watertight, factors, stages, sibenik\n", argv[i]);
+                std::fprintf(
+                    stderr,
+                    "bench_points: there is no table \"%s\"; placements, patches, safety, simple, meshes, bias, watertight, factors, stages, sibenik\n",
+                    argv[i]);
                 return 2;
             }
         for (const auto& [name, table] : kTables)

@@ -46,7 +46,9 @@ Scene glassScene() {
     return scene;
 }
 
-float groundOf(const Scene& scene) { return scene.mesh.bounds().low.y - 1e-3f * glm::length(scene.mesh.bounds().high - scene.mesh.bounds().low); }
+float groundOf(const Scene& scene) {
+    return scene.mesh.bounds().low.y - 1e-3f * glm::length(scene.mesh.bounds().high - scene.mesh.bounds().low);
+}
 
 Camera cameraOf(const Scene& scene, float yaw = 30.0f, std::uint32_t pixels = 512) {
     return Camera::around(scene.mesh.bounds(), yaw, 35.0f, pixels, pixels);
@@ -102,7 +104,8 @@ void benchMoving(benchmark::State& state, Queue& queue, bool light, const Shadow
             Scene scene = treeScene();
             const float degrees = static_cast<float>(frame), turn = glm::radians(degrees);
             const Float3 l = scene.light.toLight;
-            if (light) scene.light.toLight = Float3(l.x * std::cos(turn) - l.z * std::sin(turn), l.y, l.x * std::sin(turn) + l.z * std::cos(turn));
+            if (light)
+                scene.light.toLight = Float3(l.x * std::cos(turn) - l.z * std::sin(turn), l.y, l.x * std::sin(turn) + l.z * std::cos(turn));
             const Camera camera = cameraOf(scene, light ? 30.0f : 30.0f + degrees, 256);
             if (truth.size() <= frame) truth.push_back(truthOf(scene, camera).picture);
             const Image image = pictureOf(queue, scene, camera, method);
@@ -135,7 +138,8 @@ int main(int argc, char** argv) {
             };
             for (const auto& [name, scene] : scenes)
                 for (const char* columns : {"64", "128", "256", "512", "1024", "2048"})
-                    for (const char* option : {"", "absorption=0.125", "absorption=0.25", "absorption=0.5", "absorption=1", "absorption=2"}) {
+                    for (const char* option :
+                         {"", "absorption=0.125", "absorption=0.25", "absorption=0.5", "absorption=1", "absorption=2"}) {
                         const char* method = *option != '\0' ? "uniform" : "counted";
                         addBenchmark(name + "/" + columns + "/" + method + (*option != '\0' ? std::string("/") + option : ""),
                                      [&queue, &name, &scene, method = methodOf(method, columns, option)](benchmark::State& state) {

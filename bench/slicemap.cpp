@@ -110,11 +110,12 @@ void addSlices(Queue& queue, Meshes& meshes, const Input& input) {
     for (const unsigned columns : {64u, 128u, 256u, 1024u, 2048u, 4096u}) sizes.push_back({columns, columns, 96});
     for (const Uint3 size : sizes)
         for (const Voxelizer& method : {Voxelizer(Sampled{}), Voxelizer(Sliced{})})
-            addBenchmark("slices/" + input.name + "/" + std::to_string(size.x) + "x" + std::to_string(size.z) + "/" + std::string(name(method)),
-                         [&, input, size, method](benchmark::State& state) {
-                             const Loaded& loaded = meshes[input];
-                             bench(state, queue, loaded.onDevice, viewOf(loaded.mesh.bounds(), direction(5, 32), 1, size), method);
-                         });
+            addBenchmark(
+                "slices/" + input.name + "/" + std::to_string(size.x) + "x" + std::to_string(size.z) + "/" + std::string(name(method)),
+                [&, input, size, method](benchmark::State& state) {
+                    const Loaded& loaded = meshes[input];
+                    bench(state, queue, loaded.onDevice, viewOf(loaded.mesh.bounds(), direction(5, 32), 1, size), method);
+                });
 }
 
 /// Faces of the voxels of `mesh` at a coarse resolution: what encloses it closely.
@@ -161,7 +162,8 @@ Mesh boxAround(const Bounds& bounds) {
 
 /// Mean over columns of how many of `wide`'s slices lie in the range that the mesh itself has.
 double usedShare(Queue& queue, const DepthRange& own, const DepthRange& wide) {
-    const auto n = own.nearest().read(queue), f = own.farthest().read(queue), wn = wide.nearest().read(queue), wf = wide.farthest().read(queue);
+    const auto n = own.nearest().read(queue), f = own.farthest().read(queue), wn = wide.nearest().read(queue),
+               wf = wide.farthest().read(queue);
     double sum = 0;
     std::uint64_t columns = 0;
     for (std::size_t c = 0; c < n.size(); ++c)
@@ -175,52 +177,55 @@ double usedShare(Queue& queue, const DepthRange& own, const DepthRange& wide) {
 void addLocal(Queue& queue, Meshes& meshes, const Input& input) {
     for (const unsigned slices : {32u, 64u, 96u})
         for (const std::string how : {"uniform", "itself", "hull", "box"}) {
-            addBenchmark("local/" + input.name + "/" + std::to_string(slices) + "/" + how, [&, input, slices, how](benchmark::State& state) {
-                const Loaded& loaded = meshes[input];
-                const Grid grid = viewOf(loaded.mesh.bounds(), direction(5, 32), 1, {512, 512, slices});
-                std::optional<DeviceMesh> proxy;
-                if (how == "hull") proxy.emplace(queue, hullOf(queue, loaded.mesh, 64));
-                if (how == "box") proxy.emplace(queue, boxAround(loaded.mesh.bounds()));
-                const DeviceMesh& shadow = proxy ? *proxy : loaded.onDevice;
-                double rangeMs = 0, markMs = 0, wallMs = 0;
-                const auto run = [&] {
-                    if (how == "uniform") {
-                        const Voxels voxels = voxelize(queue, loaded.onDevice, grid, Sampled{});
-                        queue.finish();
-                        markMs += voxels.report().kernelMs;
-                        wallMs += voxels.report().wallMs;
-                        return voxels.report().kernelMs;
-                    }
-                    const DepthRange range = depthRange(queue, shadow, grid);
-                    const Voxels voxels = voxelize(queue, loaded.onDevice, grid, Sampled{.range = &range});
-                    queue.finish();
-                    const double first = range.report().kernelMs, second = voxels.report().kernelMs;
-                    rangeMs += first;
-                    markMs += second;
-                    wallMs += range.report().wallMs + voxels.report().wallMs;
-                    return first + second;
-                };
-                run();
-                rangeMs = markMs = wallMs = 0;
-                for (auto _ : state) state.SetIterationTime(run() * 1e-3);
-                state.counters["rangeMs"] = rangeMs / double(state.iterations());
-                state.counters["markMs"] = markMs / double(state.iterations());
-                state.counters["wallMs"] = wallMs / double(state.iterations());
-                state.counters["triangles"] = loaded.onDevice.triangleCount();
-                state.counters["proxyTriangles"] = how == "uniform" ? 0 : shadow.triangleCount();
-                const DepthRange own = depthRange(queue, loaded.onDevice, grid);
-                if (how == "uniform") {  // a range from the first slice to the last
-                    const std::size_t columns = own.nearest().size();
-                    Buffer<float> first = queue.workspace().take<float>(columns, "map"), last = queue.workspace().take<float>(columns, "map");
-                    first.write(queue, std::vector<float>(columns, 0.0f));
-                    last.write(queue, std::vector<float>(columns, 1.0f));
-                    state.counters["slicesUsed"] = usedShare(queue, own, DepthRange(grid, std::move(first), std::move(last)));
-                    return;
-                }
-                const DepthRange range = depthRange(queue, shadow, grid);
-                state.counters["slicesUsed"] = usedShare(queue, own, range);
-                state.counters["clipped"] = double(voxelize(queue, loaded.onDevice, grid, Sampled{.range = &range}).report().clippedFragments);
-            });
+            addBenchmark("local/" + input.name + "/" + std::to_string(slices) + "/" + how,
+                         [&, input, slices, how](benchmark::State& state) {
+                             const Loaded& loaded = meshes[input];
+                             const Grid grid = viewOf(loaded.mesh.bounds(), direction(5, 32), 1, {512, 512, slices});
+                             std::optional<DeviceMesh> proxy;
+                             if (how == "hull") proxy.emplace(queue, hullOf(queue, loaded.mesh, 64));
+                             if (how == "box") proxy.emplace(queue, boxAround(loaded.mesh.bounds()));
+                             const DeviceMesh& shadow = proxy ? *proxy : loaded.onDevice;
+                             double rangeMs = 0, markMs = 0, wallMs = 0;
+                             const auto run = [&] {
+                                 if (how == "uniform") {
+                                     const Voxels voxels = voxelize(queue, loaded.onDevice, grid, Sampled{});
+                                     queue.finish();
+                                     markMs += voxels.report().kernelMs;
+                                     wallMs += voxels.report().wallMs;
+                                     return voxels.report().kernelMs;
+                                 }
+                                 const DepthRange range = depthRange(queue, shadow, grid);
+                                 const Voxels voxels = voxelize(queue, loaded.onDevice, grid, Sampled{.range = &range});
+                                 queue.finish();
+                                 const double first = range.report().kernelMs, second = voxels.report().kernelMs;
+                                 rangeMs += first;
+                                 markMs += second;
+                                 wallMs += range.report().wallMs + voxels.report().wallMs;
+                                 return first + second;
+                             };
+                             run();
+                             rangeMs = markMs = wallMs = 0;
+                             for (auto _ : state) state.SetIterationTime(run() * 1e-3);
+                             state.counters["rangeMs"] = rangeMs / double(state.iterations());
+                             state.counters["markMs"] = markMs / double(state.iterations());
+                             state.counters["wallMs"] = wallMs / double(state.iterations());
+                             state.counters["triangles"] = loaded.onDevice.triangleCount();
+                             state.counters["proxyTriangles"] = how == "uniform" ? 0 : shadow.triangleCount();
+                             const DepthRange own = depthRange(queue, loaded.onDevice, grid);
+                             if (how == "uniform") {  // a range from the first slice to the last
+                                 const std::size_t columns = own.nearest().size();
+                                 Buffer<float> first = queue.workspace().take<float>(columns, "map"),
+                                               last = queue.workspace().take<float>(columns, "map");
+                                 first.write(queue, std::vector<float>(columns, 0.0f));
+                                 last.write(queue, std::vector<float>(columns, 1.0f));
+                                 state.counters["slicesUsed"] = usedShare(queue, own, DepthRange(grid, std::move(first), std::move(last)));
+                                 return;
+                             }
+                             const DepthRange range = depthRange(queue, shadow, grid);
+                             state.counters["slicesUsed"] = usedShare(queue, own, range);
+                             state.counters["clipped"] =
+                                 double(voxelize(queue, loaded.onDevice, grid, Sampled{.range = &range}).report().clippedFragments);
+                         });
         }
 }
 
@@ -234,8 +239,8 @@ void addViews(Queue& queue, Meshes& meshes, const Input& input) {
                 addBenchmark("views/" + input.name + "/" + size + "/" + std::to_string(view) + "/" + std::string(name(method)),
                              [&, input, share, view, method](benchmark::State& state) {
                                  const Loaded& loaded = meshes[input];
-                                 bench(state, queue, loaded.onDevice, viewOf(loaded.mesh.bounds(), direction(view, kViews), share, Uint3(256)),
-                                       method);
+                                 bench(state, queue, loaded.onDevice,
+                                       viewOf(loaded.mesh.bounds(), direction(view, kViews), share, Uint3(256)), method);
                              });
             }
 }
@@ -262,7 +267,8 @@ void addChang(Queue& queue, Meshes& meshes, const Input& input) {
                              [&, input, resolution, method, slow](benchmark::State& state) {
                                  const Loaded& loaded = meshes[input];
                                  const Grid grid = viewOf(loaded.mesh.bounds(), direction(5, 32), 1, Uint3(resolution));
-                                 if (slow) voxelize(queue, loaded.onDevice, viewOf(loaded.mesh.bounds(), direction(5, 32), 1, Uint3(8)), method);
+                                 if (slow)
+                                     voxelize(queue, loaded.onDevice, viewOf(loaded.mesh.bounds(), direction(5, 32), 1, Uint3(8)), method);
                                  bench(state, queue, loaded.onDevice, grid, method, !slow);
                              });
             if (slow) one->Iterations(1)->Repetitions(1);  // seconds

@@ -64,8 +64,8 @@ Mesh isolated(unsigned blocks, float edge) {
         return static_cast<float>((z ^ (z >> 31)) >> 40) * 0x1p-24f;
     };
     for (unsigned i = 0; i < blocks * blocks * blocks; ++i) {
-        const Float3 middle =
-            Float3(float(i % blocks), float(i / blocks % blocks), float(i / blocks / blocks)) * 8.0f + 3.5f + Float3(random(), random(), random());
+        const Float3 middle = Float3(float(i % blocks), float(i / blocks % blocks), float(i / blocks / blocks)) * 8.0f + 3.5f +
+                              Float3(random(), random(), random());
         const double spin = 360 * random(), tilt = std::acos(2 * random() - 1) * 57.29577951308232, turn = 360 * random();
         for (int k = 0; k < 3; ++k) {
             const Float3 corner = turned(Float3(edge / std::sqrt(3.0f), 0, 0), 120.0 * k + spin, 0, 1);
@@ -123,14 +123,16 @@ void addFacet(Queue& queue, const Contender& one) {
     for (const unsigned around : {6u, 10u, 16u, 24u, 36u, 56u, 88u, 128u, 192u, 304u, 480u, 768u}) {
         const double edge = 50 * 3.14159265358979323846 / around;
         addBenchmark("facet/" + text(edge) + "/" + one.name, [&queue, one, around](benchmark::State& state) {
-            Mesh mesh = makeShape("sphere", std::vector<std::string>{"around=" + std::to_string(around), "rings=" + std::to_string(around / 2)});
+            Mesh mesh =
+                makeShape("sphere", std::vector<std::string>{"around=" + std::to_string(around), "rings=" + std::to_string(around / 2)});
             const Bounds bounds = mesh.bounds();
             const Float3 middle = (bounds.low + bounds.high) * 0.5f;
             const float scale = 50 / (bounds.high.z - bounds.low.z);
             for (Float3& p : mesh.positions) p = Float3(32.1f, 31.8f, 32.3f) + turned(turned((p - middle) * scale, 33, 1, 2), 21, 0, 1);
             const Grid grid = Grid::box(Float3(0), 1, Uint3(64));
             const reference::Truth truth = reference::thin(mesh, grid);
-            state.counters["missingThin"] = compareVoxels(timed(state, queue, mesh, grid, one.method), truth.certain, truth.possible).missingShare();
+            state.counters["missingThin"] =
+                compareVoxels(timed(state, queue, mesh, grid, one.method), truth.certain, truth.possible).missingShare();
             state.counters["triangles"] = double(mesh.triangleCount());
         })->Iterations(1);
     }
@@ -214,10 +216,14 @@ int main(int argc, char** argv) {
             addOffset(queue, one, false);
         for (const bool twist : {false, true}) {
             const auto add = [&](const Contender& one) {
-                addMoving(one.name, twist, [&queue, method = one.method](const Mesh& mesh, const Grid& grid) { return voxelize(queue, mesh, grid, method).host(); });
+                addMoving(one.name, twist, [&queue, method = one.method](const Mesh& mesh, const Grid& grid) {
+                    return voxelize(queue, mesh, grid, method).host();
+                });
             };
             for (const Contender& one : contenders()) add(one);
-            for (const Contender& one : {Contender{"conservative", Conservative{}}, Contender{"points", Points{}}, Contender{"solid", Solid{}}}) add(one);
+            for (const Contender& one :
+                 {Contender{"conservative", Conservative{}}, Contender{"points", Points{}}, Contender{"solid", Solid{}}})
+                add(one);
             addMoving("truth", twist, [](const Mesh& mesh, const Grid& grid) { return reference::thin(mesh, grid).certain; });
         }
     });

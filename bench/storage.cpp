@@ -52,17 +52,22 @@ void bench(benchmark::State& state, Queue& queue, const DeviceMesh& mesh, const 
 }  // namespace
 
 int main(int argc, char** argv) {
-    return benchMain(argc, argv, {"--benchmark_repetitions=5", "--benchmark_report_aggregates_only=true", "--benchmark_min_time=0.05"}, [](Queue& queue) {
-        static std::vector<std::pair<std::string, DeviceMesh>> meshes;
-        for (const char* shape : {"torus", "tree"}) meshes.emplace_back(shape, DeviceMesh(queue, makeShape(shape)));
-        if (const auto path = dataMesh("meshes/dragon_vrip_res2.ply")) meshes.emplace_back(path->stem().string(), DeviceMesh(queue, load(*path)));
-        for (const auto& [name, mesh] : meshes)
-            for (const std::uint32_t resolution : kResolutions)
-                for (const Storage storage : {Storage::dense, Storage::bricks}) {
-                    const Grid grid = Grid::fit(mesh.bounds(), resolution);
-                    if (storage == Storage::dense && grid.wordCount() * 4 > kDenseMost) continue;
-                    const std::string title = name + "/" + std::to_string(resolution) + (storage == Storage::dense ? "/dense" : "/bricks");
-                    addBenchmark(title, [&queue, &mesh = mesh, grid, storage](benchmark::State& state) { bench(state, queue, mesh, grid, storage); });
-                }
-    });
+    return benchMain(argc, argv, {"--benchmark_repetitions=5", "--benchmark_report_aggregates_only=true", "--benchmark_min_time=0.05"},
+                     [](Queue& queue) {
+                         static std::vector<std::pair<std::string, DeviceMesh>> meshes;
+                         for (const char* shape : {"torus", "tree"}) meshes.emplace_back(shape, DeviceMesh(queue, makeShape(shape)));
+                         if (const auto path = dataMesh("meshes/dragon_vrip_res2.ply"))
+                             meshes.emplace_back(path->stem().string(), DeviceMesh(queue, load(*path)));
+                         for (const auto& [name, mesh] : meshes)
+                             for (const std::uint32_t resolution : kResolutions)
+                                 for (const Storage storage : {Storage::dense, Storage::bricks}) {
+                                     const Grid grid = Grid::fit(mesh.bounds(), resolution);
+                                     if (storage == Storage::dense && grid.wordCount() * 4 > kDenseMost) continue;
+                                     const std::string title =
+                                         name + "/" + std::to_string(resolution) + (storage == Storage::dense ? "/dense" : "/bricks");
+                                     addBenchmark(title, [&queue, &mesh = mesh, grid, storage](benchmark::State& state) {
+                                         bench(state, queue, mesh, grid, storage);
+                                     });
+                                 }
+                     });
 }

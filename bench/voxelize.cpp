@@ -268,13 +268,16 @@ void benchPeer(benchmark::State& state, Bench& bench, const Case& one, const pee
 }
 
 benchmark::internal::Benchmark* add(const std::string& name, std::function<void(benchmark::State&)> run) {
-    return benchmark::RegisterBenchmark(name.c_str(), [run = std::move(run)](benchmark::State& state) {
-        try {
-            run(state);
-        } catch (const std::exception& error) {
-            state.SkipWithError(error.what());
-        }
-    })->UseManualTime()->Unit(benchmark::kMillisecond);
+    return benchmark::RegisterBenchmark(name.c_str(),
+                                        [run = std::move(run)](benchmark::State& state) {
+                                            try {
+                                                run(state);
+                                            } catch (const std::exception& error) {
+                                                state.SkipWithError(error.what());
+                                            }
+                                        })
+        ->UseManualTime()
+        ->Unit(benchmark::kMillisecond);
 }
 
 /// The method's defaults and, where options are swept, each option at powers of two of its default (of an eighth of its range where that
@@ -310,11 +313,11 @@ void addAll(Bench& bench, const std::vector<Input>& meshes, bool withPeers) {
             const std::string group = input.name + "/" + std::to_string(resolution) + "/";
             for (const Method& method : methods()) {
                 if (method.family != kFamily) continue;
-                if (method.role == Role::baseline && (resolution > kBaselineResolution || input.name.find('+') != std::string::npos)) continue;
+                if (method.role == Role::baseline && (resolution > kBaselineResolution || input.name.find('+') != std::string::npos))
+                    continue;
                 for (const std::string& choice : optionChoices(method, resolution, input.scaling)) {
                     const Case one{group + std::string(method.name) + (choice.empty() ? "" : "/" + choice), group, input, resolution};
-                    const Voxelizer voxelizer =
-                        voxelizerByName(method.name, std::span(&choice, choice.empty() ? 0 : 1));
+                    const Voxelizer voxelizer = voxelizerByName(method.name, std::span(&choice, choice.empty() ? 0 : 1));
                     bench.judgeLater(group, one.name, [voxelizer](Bench& b, const Bench::Loaded& loaded, const Grid& grid) {
                         return voxelize(b.queue(), loaded.onDevice, grid, voxelizer).host();
                     });

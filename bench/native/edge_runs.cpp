@@ -180,8 +180,7 @@ void fill(const Batch& batch, int lane, std::int32_t beginY, std::int32_t endY, 
         return;
     }
     for (std::int32_t t = tile0; t <= tile1; ++t)
-        batch.zx.runs(lane, iota + double(8 * t), z0, z1, columns[std::size_t(2 * (t - tile0))],
-                      columns[std::size_t(2 * (t - tile0) + 1)]);
+        batch.zx.runs(lane, iota + double(8 * t), z0, z1, columns[std::size_t(2 * (t - tile0))], columns[std::size_t(2 * (t - tile0) + 1)]);
     for (std::int32_t group = y0 & ~7; group < y1; group += 8) {
         Ints rowX0, rowX1, rowZ0, rowZ1;
         batch.xy.runs(lane, iota + double(group), x0, x1, rowX0, rowX1);
@@ -190,8 +189,7 @@ void fill(const Batch& batch, int lane, std::int32_t beginY, std::int32_t endY, 
             const int k = y & 7;
             const std::int32_t beginX = rowX0[k], endX = rowX1[k], beginZ = rowZ0[k], endZ = rowZ1[k];
             if (beginX >= endX || beginZ >= endZ) continue;
-            const double low = batch.planeLow[lane] + batch.planeY[lane] * y,
-                         high = batch.planeHigh[lane] + batch.planeY[lane] * y;
+            const double low = batch.planeLow[lane] + batch.planeY[lane] * y, high = batch.planeHigh[lane] + batch.planeY[lane] * y;
             for (std::int32_t t = beginX >> 3; t <= (endX - 1) >> 3; ++t) {
                 const Lanes along = batch.planeX[lane] * (iota + double(8 * t));
                 const Ints x = iotaInts + 8 * t;
@@ -257,8 +255,7 @@ void fillSmall(const Batch& b, const Ints& small, std::int32_t beginY, std::int3
             const Ints first = toInts(least(low, highest)) - z0, end = toInts(most(high, lowest)) - z0;
             const Ints in = (x >= xFirst) & (x < xEnd) & (i < width) & (j < rows) & (first < end);
             const Words mask = (ones << Words(first & 31)) & (ones >> Words(-end & 31)) & Words(in);
-            const Ints word =
-                small & (((((y - beginY) >> 3) * tilesX + (x >> 3)) * tilesZ + (z0 >> 5)) * 64 + (y & 7) * 8 + (x & 7));
+            const Ints word = small & (((((y - beginY) >> 3) * tilesX + (x >> 3)) * tilesZ + (z0 >> 5)) * 64 + (y & 7) * 8 + (x & 7));
             const Words lower = mask << Words(shift);
             for (int l = 0; l < 8; ++l) words[word[l]] |= lower[l];
             if (!across) continue;
@@ -276,8 +273,7 @@ struct Scratch {
 
 }  // namespace
 
-void voxelizeEdgeRuns(std::span<const float> xyz, std::span<const std::uint32_t> indices, const Grid& grid, unsigned threads,
-                      Bits& out) {
+void voxelizeEdgeRuns(std::span<const float> xyz, std::span<const std::uint32_t> indices, const Grid& grid, unsigned threads, Bits& out) {
     static thread_local Scratch kept;
     Scratch& scratch = kept;
     out.fit(grid);
@@ -293,8 +289,7 @@ void voxelizeEdgeRuns(std::span<const float> xyz, std::span<const std::uint32_t>
     std::barrier sync{std::ptrdiff_t(threads)};
     std::atomic<std::size_t> next = 0;
     parallel(threads, [&](unsigned t) {
-        for (std::size_t i = points * t / threads; i < points * (t + 1) / threads; ++i)
-            scratch.points[i] = toVoxel(grid, &xyz[3 * i]);
+        for (std::size_t i = points * t / threads; i < points * (t + 1) / threads; ++i) scratch.points[i] = toVoxel(grid, &xyz[3 * i]);
         sync.arrive_and_wait();
 
         std::vector<std::uint32_t>* lists = &scratch.lists[t * slabs];
@@ -324,8 +319,7 @@ void voxelizeEdgeRuns(std::span<const float> xyz, std::span<const std::uint32_t>
                     for (int l = 0; l < 8; ++l)
                         for (int k = 0; k < 3; ++k)
                             corner[k][l] =
-                                &scratch.points[indices[3 * std::size_t(list[i + std::size_t(std::min(l, lanes - 1))]) +
-                                                        std::size_t(k)]];
+                                &scratch.points[indices[3 * std::size_t(list[i + std::size_t(std::min(l, lanes - 1))]) + std::size_t(k)]];
                     batch.set(corner, grid.size);
                     const Ints small = smallOnes(batch);
                     fillSmall(batch, small, std::int32_t(8 * begin), std::int32_t(8 * end), out);

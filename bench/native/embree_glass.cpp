@@ -49,7 +49,8 @@ struct EmbreeGlass::State {
     }
 };
 
-EmbreeGlass::EmbreeGlass(std::span<const float> positions, std::span<const std::uint32_t> indices, std::span<const float> normals, EmbreeBuild build)
+EmbreeGlass::EmbreeGlass(std::span<const float> positions, std::span<const std::uint32_t> indices, std::span<const float> normals,
+                         EmbreeBuild build)
     : state_(std::make_unique<State>()) {
     State& s = *state_;
     s.indices = indices;
@@ -94,7 +95,8 @@ void EmbreeGlass::trace(const vitrail_CameraDesc& camera, float indexOfRefractio
     const auto one = [&](std::uint32_t x, std::uint32_t y) {
         const float across = ((static_cast<float>(x) + 0.5f) / static_cast<float>(camera.width) * 2 - 1) * camera.right.w,
                     above = (1 - (static_cast<float>(y) + 0.5f) / static_cast<float>(camera.height) * 2) * camera.up.w;
-        float d[3] = {camera.forward.x + camera.right.x * across + camera.up.x * above, camera.forward.y + camera.right.y * across + camera.up.y * above,
+        float d[3] = {camera.forward.x + camera.right.x * across + camera.up.x * above,
+                      camera.forward.y + camera.right.y * across + camera.up.y * above,
                       camera.forward.z + camera.right.z * across + camera.up.z * above},
               o[3] = {camera.eye.x, camera.eye.y, camera.eye.z}, through[3] = {1, 1, 1}, from = 0;
         vitrail_normalize(d);
@@ -140,7 +142,8 @@ void EmbreeGlass::trace(const vitrail_CameraDesc& camera, float indexOfRefractio
     const auto work = [&] {
         for (std::uint32_t tile = nextTile++; tile < tiles; tile = nextTile++)
             for (std::uint32_t y = tile / tilesAcross * kTile; y < std::min(tile / tilesAcross * kTile + kTile, camera.height); ++y)
-                for (std::uint32_t x = tile % tilesAcross * kTile; x < std::min(tile % tilesAcross * kTile + kTile, camera.width); ++x) one(x, y);
+                for (std::uint32_t x = tile % tilesAcross * kTile; x < std::min(tile % tilesAcross * kTile + kTile, camera.width); ++x)
+                    one(x, y);
     };
     std::vector<std::jthread> threads;
     for (unsigned i = 1; i < std::max(1u, std::thread::hardware_concurrency()); ++i) threads.emplace_back(work);

@@ -19,7 +19,8 @@ enum class EmbreeBuild {
 class EmbreeGlass {
 public:
     // Packed float3 positions and normals of vertices, three indices a triangle. The last two stay the caller's.
-    EmbreeGlass(std::span<const float> positions, std::span<const std::uint32_t> indices, std::span<const float> normals, EmbreeBuild build);
+    EmbreeGlass(std::span<const float> positions, std::span<const std::uint32_t> indices, std::span<const float> normals,
+                EmbreeBuild build);
     ~EmbreeGlass();
 
     // Other positions, which build() then takes up.

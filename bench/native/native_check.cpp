@@ -110,8 +110,7 @@ Mesh beside() {
     for (int i = 0; i < 3000; ++i) {
         std::array<float, 9> p;
         const int axis = i % 3;
-        const double side = i % 2 ? 1.011 : -1.011, x = 1.9 * unit() - 0.95, y = 1.9 * unit() - 0.95,
-                     far = i % 100 ? 0.012 : 3e38;
+        const double side = i % 2 ? 1.011 : -1.011, x = 1.9 * unit() - 0.95, y = 1.9 * unit() - 0.95, far = i % 100 ? 0.012 : 3e38;
         for (int k = 0; k < 3; ++k) {
             p[3 * k + axis] = float(side + unit() * (side > 0 ? far : -far));
             p[3 * k + (axis + 1) % 3] = float(x + 0.02 * unit());
@@ -179,17 +178,16 @@ int compare(const Mesh& mesh, const Grid& grid, unsigned threads, Bits& first, B
                     continue;
                 }
                 if (++wrong <= 3 && !quiet)
-                    std::printf(
-                        "%s, %u x %u x %u, %u threads: cell (%u, %u, %u), separation %g: separating axis %d, edge runs %d\n",
-                        mesh.name.c_str(), size[0], size[1], size[2], threads, x, y, z, s, a, b);
+                    std::printf("%s, %u x %u x %u, %u threads: cell (%u, %u, %u), separation %g: separating axis %d, edge runs %d\n",
+                                mesh.name.c_str(), size[0], size[1], size[2], threads, x, y, z, s, a, b);
             }
     if (first.count() != touched || second.count() != touchedSecond) {
         std::printf("%s, %u x %u x %u: bits outside the grid\n", mesh.name.c_str(), size[0], size[1], size[2]);
         ++wrong;
     }
     if (!quiet)
-        std::printf("%-40s %3u x %3u x %3u, %u threads: %8zu cells, %d ties, %d wrong\n", mesh.name.c_str(), size[0], size[1],
-                    size[2], threads, touched, ties, wrong);
+        std::printf("%-40s %3u x %3u x %3u, %u threads: %8zu cells, %d ties, %d wrong\n", mesh.name.c_str(), size[0], size[1], size[2],
+                    threads, touched, ties, wrong);
     return wrong;
 }
 

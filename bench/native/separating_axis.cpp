@@ -12,9 +12,7 @@ namespace vitrail::native {
 namespace {
 
 Point minus(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Point cross(const Point& a, const Point& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
+Point cross(const Point& a, const Point& b) { return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}; }
 double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 // A cell at (x,y,z) is not separated along `direction` if low <= direction . (x,y,z) <= high.
@@ -64,8 +62,8 @@ void voxelizeTriangle(const Point* v, Bits& out) {
 
 }  // namespace
 
-void voxelizeSeparatingAxis(std::span<const float> xyz, std::span<const std::uint32_t> indices, const Grid& grid,
-                            unsigned threads, Bits& out) {
+void voxelizeSeparatingAxis(std::span<const float> xyz, std::span<const std::uint32_t> indices, const Grid& grid, unsigned threads,
+                            Bits& out) {
     out.fit(grid);
     threads = std::max(threads, 1u);
     const std::size_t wordCount = out.words.size();

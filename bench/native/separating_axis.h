@@ -6,7 +6,7 @@
 namespace vitrail::native {
 
 // Sets the bit of every cell that a triangle touches, clears all others.
-void voxelizeSeparatingAxis(std::span<const float> xyz, std::span<const std::uint32_t> indices, const Grid& grid,
-                            unsigned threads, Bits& out);
+void voxelizeSeparatingAxis(std::span<const float> xyz, std::span<const std::uint32_t> indices, const Grid& grid, unsigned threads,
+                            Bits& out);
 
 }  // namespace vitrail::native

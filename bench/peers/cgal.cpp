@@ -29,8 +29,7 @@ void mark(const Tree& tree, std::uint32_t x, std::uint32_t y, std::uint32_t z, s
         return;
     }
     const std::uint32_t half = edge / 2;
-    for (std::uint32_t i = 0; i < 8; ++i)
-        mark(tree, x + (i & 1u) * half, y + (i >> 1 & 1u) * half, z + (i >> 2) * half, half, bits);
+    for (std::uint32_t i = 0; i < 8; ++i) mark(tree, x + (i & 1u) * half, y + (i >> 1 & 1u) * half, z + (i >> 2) * half, half, bits);
 }
 
 }  // namespace
@@ -58,8 +57,7 @@ double cgalTree(const Triangles& triangles, const native::Grid& grid, unsigned t
         std::atomic<std::uint32_t> next = 0;
         native::parallel(threads, [&](unsigned) {
             for (std::uint32_t b; (b = next.fetch_add(1)) < blocks[0] * blocks[1] * blocks[2];)
-                mark(tree, b % blocks[0] * kBlock, b / blocks[0] % blocks[1] * kBlock, b / blocks[0] / blocks[1] * kBlock, kBlock,
-                     cells);
+                mark(tree, b % blocks[0] * kBlock, b / blocks[0] % blocks[1] * kBlock, b / blocks[0] / blocks[1] * kBlock, kBlock, cells);
         });
     });
 }

@@ -43,9 +43,8 @@ nanovdb::GridHandle<> nanoGrid(const Voxels& voxels, Value&& value) {
     const auto open = OpenGrid::create();
     auto cells = open->getAccessor();
     const std::vector<Float3>& normals = voxels.normals();
-    voxels.forEach([&](Uint3 at, std::uint64_t index) {
-        cells.setValueOn(openvdb::Coord(int(at.x), int(at.y), int(at.z)), value(normals[index]));
-    });
+    voxels.forEach(
+        [&](Uint3 at, std::uint64_t index) { cells.setValueOn(openvdb::Coord(int(at.x), int(at.y), int(at.z)), value(normals[index])); });
     return nanovdb::openToNanoVDB(*open);
 }
 
@@ -67,8 +66,7 @@ std::uint64_t indexBytes(const Voxels& voxels) {
 
 std::uint64_t denseBytes(const Voxels& voxels) {
     const Uint3 size = voxels.grid().size();
-    return std::uint64_t(16) * std::max({size.x, size.y, size.z}) * std::max({size.x, size.y, size.z}) *
-           std::max({size.x, size.y, size.z});
+    return std::uint64_t(16) * std::max({size.x, size.y, size.z}) * std::max({size.x, size.y, size.z}) * std::max({size.x, size.y, size.z});
 }
 
 }  // namespace
@@ -85,13 +83,12 @@ int main(int argc, char** argv) {
             const auto path = std::filesystem::path(folder) / "meshes/dragon_vrip_res2.ply";
             if (std::filesystem::exists(path)) meshes.emplace_back(path.stem().string(), DeviceMesh(queue, load(path)));
         }
-        const std::tuple<const char*, Storage, std::uint64_t (*)(const Voxels&)> forms[] = {
-            {"dense", Storage::dense, ourBytes},
-            {"bricks", Storage::bricks, ourBytes},
-            {"nanovdb_index", Storage::dense, indexBytes},
-            {"nanovdb_packed", Storage::dense, packedBytes},
-            {"nanovdb_floats", Storage::dense, floatBytes},
-            {"rgba32f", Storage::dense, denseBytes}};
+        const std::tuple<const char*, Storage, std::uint64_t (*)(const Voxels&)> forms[] = {{"dense", Storage::dense, ourBytes},
+                                                                                            {"bricks", Storage::bricks, ourBytes},
+                                                                                            {"nanovdb_index", Storage::dense, indexBytes},
+                                                                                            {"nanovdb_packed", Storage::dense, packedBytes},
+                                                                                            {"nanovdb_floats", Storage::dense, floatBytes},
+                                                                                            {"rgba32f", Storage::dense, denseBytes}};
         for (const auto& [name, mesh] : meshes)
             for (const auto& [form, storage, bytesOf] : forms) {
                 const std::string title = name + "/" + std::to_string(kResolution) + "/" + form;

@@ -38,7 +38,8 @@ Truths truths([[maybe_unused]] const MeshView& mesh, [[maybe_unused]] const Grid
     reference::Truth touched = reference::conservative(mesh, grid), thin = reference::thin(mesh, grid);
     return {std::move(touched.certain), std::move(touched.possible), std::move(thin.certain), std::move(thin.possible)};
 #else
-    throw Error(ErrorCode::unsupported, {.what = "compare: this program was built without the truth", .remedy = "a build with VITRAIL_BUILD_REFERENCE"});
+    throw Error(ErrorCode::unsupported,
+                {.what = "compare: this program was built without the truth", .remedy = "a build with VITRAIL_BUILD_REFERENCE"});
 #endif
 }
 
@@ -149,8 +150,8 @@ int runCompare(const Options& options) {
         bar.wait("comparing " + method, [&] {
             if (row != nullptr && row->family == Family::solidVoxels)
                 // What holds of surfaces does not concern it: a solid has no wall to leak through.
-                addErrors(record, compareVoxels(bits, inside->certain, inside->possible), compareVoxels(bits, inside->certain, inside->possible),
-                          Watertight{});
+                addErrors(record, compareVoxels(bits, inside->certain, inside->possible),
+                          compareVoxels(bits, inside->certain, inside->possible), Watertight{});
             else
                 addErrors(record, compareVoxels(bits, truth.certain, truth.possible),
                           compareVoxels(bits, truth.certainThin, truth.possibleThin), checkWatertight(bits, truth.certainThin));
@@ -185,10 +186,10 @@ int runCompare(const Options& options) {
     if (options.json) {
         print(out);
     } else {
-        const std::string text = options.mesh + ": " + countText(meshReport.triangles) + " triangles, " + meshReport.summary() + "; a grid of " +
-                                 grid.text() + ", " + countText(records.front()["truth"].get<std::uint64_t>()) + " voxels touched\n" +
-                                 device.info().name + ", " + device.info().platform + "; median of " + std::to_string(options.repeats) +
-                                 " after a first run\n\n" + tableText(records);
+        const std::string text = options.mesh + ": " + countText(meshReport.triangles) + " triangles, " + meshReport.summary() +
+                                 "; a grid of " + grid.text() + ", " + countText(records.front()["truth"].get<std::uint64_t>()) +
+                                 " voxels touched\n" + device.info().name + ", " + device.info().platform + "; median of " +
+                                 std::to_string(options.repeats) + " after a first run\n\n" + tableText(records);
         std::fputs(text.c_str(), stdout);
     }
     return met ? 0 : 3;
@@ -207,9 +208,10 @@ void addCompare(CLI::App& app, Run& run) {
     verb->add_option("--against", options->against, "score this file's voxels by the same truth: .vdb, .npy, .vox or .raw on the same grid")
         ->type_name("FILE");
     options->grid.add(*verb, 128);
-    verb->add_option("--expect", options->expect,
-                     "a condition on each record, 'missing<=0.04', or on one method's, 'points.watertight==true'; may be given more than once; "
-                     "exit code 3 when one is not met; its fields are those of --json")
+    verb->add_option(
+            "--expect", options->expect,
+            "a condition on each record, 'missing<=0.04', or on one method's, 'points.watertight==true'; may be given more than once; "
+            "exit code 3 when one is not met; its fields are those of --json")
         ->allow_extra_args(false)
         ->type_name("CONDITION");
     verb->add_option("--repeats", options->repeats, "timed runs of each method, of which the median counts")
@@ -219,9 +221,10 @@ void addCompare(CLI::App& app, Run& run) {
     options->device.add(*verb);
     verb->add_flag("--json", options->json, "records as JSON on standard output");
     options->methodOptions.add(*verb, Family::surfaceVoxels);
-    verb->footer("missing, extra: share of the cells that a triangle touches (double precision, ties of 1e-5 cell apart).\n"
-                 "missing (thin): the same for the 6-separating surface. watertight: axis-parallel rays and a flood from outside do not pass.\n"
-                 "vitrail compare bunny.ply -r 128 --methods points --expect 'missing<=0.25' --expect 'extra==0'");
+    verb->footer(
+        "missing, extra: share of the cells that a triangle touches (double precision, ties of 1e-5 cell apart).\n"
+        "missing (thin): the same for the 6-separating surface. watertight: axis-parallel rays and a flood from outside do not pass.\n"
+        "vitrail compare bunny.ply -r 128 --methods points --expect 'missing<=0.25' --expect 'extra==0'");
     verb->callback([options, &run] { run = [options] { return runCompare(*options); }; });
 }
 

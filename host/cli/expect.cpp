@@ -77,7 +77,8 @@ bool judge(Json& document, const std::vector<Expectation>& expectations, const J
             if (!expectation.speaksOf(record)) continue;
             spoke = true;
             const bool met = expectation.met(record);
-            verdicts.push_back({{"expect", expectation.text()}, {"method", record.at("method")}, {"value", expectation.value(record)}, {"met", met}});
+            verdicts.push_back(
+                {{"expect", expectation.text()}, {"method", record.at("method")}, {"value", expectation.value(record)}, {"met", met}});
             if (met) continue;
             all = false;
             note("vitrail: not met by " + record.at("method").get<std::string>() + ": " + expectation.text() + " (it is " +

@@ -43,9 +43,10 @@ int showMethods(bool json) {
     }
     std::string text;
     for (const Method& method : methods()) {
-        text += std::string(method.name) + "  (" + name(method.family) + ", " + name(method.role) + "; guarantee: " + name(method.guarantee) +
-                "; channels: " + (method.channels ? "yes" : "no") + "; camera grids: " + (method.cameraGrids ? "yes" : "no") + ")\n" +
-                wrapped(method.says, 4, 96) + wrapped(method.paper, 4, 96);
+        text += std::string(method.name) + "  (" + name(method.family) + ", " + name(method.role) +
+                "; guarantee: " + name(method.guarantee) + "; channels: " + (method.channels ? "yes" : "no") +
+                "; camera grids: " + (method.cameraGrids ? "yes" : "no") + ")\n" + wrapped(method.says, 4, 96) +
+                wrapped(method.paper, 4, 96);
         for (const MethodOption& option : method.options) {
             if (option.name.empty()) continue;
             char range[96];
@@ -78,7 +79,8 @@ int runInfo(const Options& options) {
     const bool fromCache = counters.programBuilds == 0;
     const DeviceInfo chosen = device.info();
     const auto isChosen = [&, found = false](const DeviceInfo& info) mutable {
-        const bool same = !found && info.name == chosen.name && info.platform == chosen.platform && info.driverVersion == chosen.driverVersion;
+        const bool same =
+            !found && info.name == chosen.name && info.platform == chosen.platform && info.driverVersion == chosen.driverVersion;
         found = found || same;
         return same;
     };
@@ -113,8 +115,8 @@ int runInfo(const Options& options) {
     std::string text = "vitrail " VITRAIL_VERSION "\n\n";
     auto chosenOf = isChosen;
     for (const DeviceInfo& info : Device::list()) {
-        text += std::string(chosenOf(info) ? "* " : "  ") + info.platform + " / " + info.name + "\n      " + info.platformVersion + ", driver " +
-                info.driverVersion + "\n      " + std::to_string(info.computeUnits) + " compute units, memory " +
+        text += std::string(chosenOf(info) ? "* " : "  ") + info.platform + " / " + info.name + "\n      " + info.platformVersion +
+                ", driver " + info.driverVersion + "\n      " + std::to_string(info.computeUnits) + " compute units, memory " +
                 detail::bytesText(info.globalBytes) + ", largest buffer " + detail::bytesText(info.maxBufferBytes) + "\n      " +
                 (info.fp64 ? "doubles decide voxels" : "no doubles: single precision decides voxels") + "\n";
     }

@@ -31,7 +31,7 @@ struct Options {
 #ifdef VITRAIL_HAS_REFERENCE
 
 /// Colours of wrong pixels, by RayFault; pixels that are not judged are white.
-constexpr Float3 kFaultColours[] = {{0.75f, 0.75f, 0.75f}, {1.0f, 1.0f, 1.0f}, {0.0f, 0.0f, 0.0f}, {0.6f, 0.0f, 0.6f},
+constexpr Float3 kFaultColours[] = {{0.75f, 0.75f, 0.75f}, {1.0f, 1.0f, 1.0f},    {0.0f, 0.0f, 0.0f}, {0.6f, 0.0f, 0.6f},
                                     {0.05f, 0.15f, 0.85f}, {0.85f, 0.05f, 0.03f}, {0.95f, 0.5f, 0.0f}};
 
 struct View {
@@ -120,14 +120,16 @@ int runJudge(const Options& options) {
         return std::string(text);
     };
     Table table;
-    table.row({"view", "pixels", "correct", "within 1 deg", "median deg", "95 % deg", "stable", "stable correct", "transmittance off", "picture, rel. MSE"});
+    table.row({"view", "pixels", "correct", "within 1 deg", "median deg", "95 % deg", "stable", "stable correct", "transmittance off",
+               "picture, rel. MSE"});
     for (const View& view : views) {
         const RayErrors& e = view.errors;
-        table.row({"yaw " + angle(view.yaw), countText(e.pixels), rate(e.correct), rate(e.close), angle(e.medianDegrees), angle(e.worstDegrees),
-                   rate(e.pixels == 0 ? 1.0 : double(e.stablePixels) / double(e.pixels)), rate(e.stableCorrect), angle(e.transmittanceMean), angle(e.relativeMse)});
+        table.row({"yaw " + angle(view.yaw), countText(e.pixels), rate(e.correct), rate(e.close), angle(e.medianDegrees),
+                   angle(e.worstDegrees), rate(e.pixels == 0 ? 1.0 : double(e.stablePixels) / double(e.pixels)), rate(e.stableCorrect),
+                   angle(e.transmittanceMean), angle(e.relativeMse)});
     }
-    std::fputs((options.scene + ": " + options.method + " in a grid of " + grid + "\n" + table.text() + "mean: correct " + rate(correct) + " (least " + rate(least) + "), stable " +
-                rate(stable) + "\n" + (options.faults.empty() ? "" : options.faults + "\n"))
+    std::fputs((options.scene + ": " + options.method + " in a grid of " + grid + "\n" + table.text() + "mean: correct " + rate(correct) +
+                " (least " + rate(least) + "), stable " + rate(stable) + "\n" + (options.faults.empty() ? "" : options.faults + "\n"))
                    .c_str(),
                stdout);
     return 0;
@@ -136,7 +138,8 @@ int runJudge(const Options& options) {
 #else
 
 int runJudge(const Options&) {
-    throw Error(ErrorCode::unsupported, {.what = "this build has no reference to judge by", .remedy = "a build with VITRAIL_BUILD_REFERENCE"});
+    throw Error(ErrorCode::unsupported,
+                {.what = "this build has no reference to judge by", .remedy = "a build with VITRAIL_BUILD_REFERENCE"});
 }
 
 #endif
@@ -148,7 +151,8 @@ void addJudge(CLI::App& app, Run& run) {
     auto options = std::make_shared<Options>();
     verb->add_option("SCENE", options->scene, "a mesh (.ply, .stl, .off, .obj), glTF (.gltf, .glb) or a JSON scene")->required();
     verb->add_option("--method", options->method, methodNames(Family::glass))->capture_default_str()->type_name("NAME");
-    verb->add_option("--ior", options->indexOfRefraction, "index of refraction of all materials, 1 to 3; else the scene's")->check(CLI::Range(1.0, 3.0));
+    verb->add_option("--ior", options->indexOfRefraction, "index of refraction of all materials, 1 to 3; else the scene's")
+        ->check(CLI::Range(1.0, 3.0));
     verb->add_option("--views", options->views, "around the scene")->check(CLI::Range(1, 36))->capture_default_str();
     verb->add_option("--yaw", options->yaw, "degrees about +y, of the first view")->check(CLI::Range(-360.0, 360.0))->capture_default_str();
     verb->add_option("--pitch", options->pitch, "degrees upward")->check(CLI::Range(-90.0, 90.0))->capture_default_str();
@@ -156,15 +160,17 @@ void addJudge(CLI::App& app, Run& run) {
     verb->add_option("--crease", options->crease, "degrees: where faces meet at more, an edge of a mesh without normals stays sharp")
         ->check(CLI::Range(0.0, 180.0))
         ->capture_default_str();
-    verb->add_option("--faults", options->faults,
-                     "OUT.png: wrong pixels of all views: too few crossings blue, too many red, drifted orange, glass missed black, held inside purple")
+    verb->add_option(
+            "--faults", options->faults,
+            "OUT.png: wrong pixels of all views: too few crossings blue, too many red, drifted orange, glass missed black, held inside purple")
         ->type_name("OUT");
     options->device.add(*verb);
     verb->add_flag("--json", options->json, "the rates as JSON on standard output");
     options->methodOptions.add(*verb, Family::glass);
-    verb->footer("correct: share of the pixels whose reference ray goes through glass and leaves, whose direction is within 5 degrees (dot > 0.9962);\n"
-                 "stable: of those, the ones whose reference stays within that over half a pixel.\n"
-                 "vitrail judge dragon.ply --ior 1.14 --resolution 256");
+    verb->footer(
+        "correct: share of the pixels whose reference ray goes through glass and leaves, whose direction is within 5 degrees (dot > 0.9962);\n"
+        "stable: of those, the ones whose reference stays within that over half a pixel.\n"
+        "vitrail judge dragon.ply --ior 1.14 --resolution 256");
     verb->callback([options, &run] { run = [options] { return runJudge(*options); }; });
 }
 

@@ -12,9 +12,12 @@ namespace {
 
 int exitCode(vitrail::ErrorCode code) {
     switch (code) {
-        case vitrail::ErrorCode::badOption: return 2;
-        case vitrail::ErrorCode::cancelled: return 130;
-        default: return 1;
+        case vitrail::ErrorCode::badOption:
+            return 2;
+        case vitrail::ErrorCode::cancelled:
+            return 130;
+        default:
+            return 1;
     }
 }
 
@@ -27,8 +30,9 @@ int main(int argc, char** argv) {
     app.set_version_flag("--version", "vitrail " VITRAIL_VERSION);
     app.require_subcommand(1);
     app.get_formatter()->column_width(34);
-    app.footer("`vitrail VERB --help` tells about one. Exit codes: 0, 1 error, 2 bad arguments, 3 an --expect not met, 130 interrupted.\n"
-               "Environment: VITRAIL_DEVICE, VITRAIL_MEMORY_LIMIT (3G, 512M), VITRAIL_CACHE_DIR, VITRAIL_BUILD_OPTIONS, VITRAIL_KERNEL_PATH.");
+    app.footer(
+        "`vitrail VERB --help` tells about one. Exit codes: 0, 1 error, 2 bad arguments, 3 an --expect not met, 130 interrupted.\n"
+        "Environment: VITRAIL_DEVICE, VITRAIL_MEMORY_LIMIT (3G, 512M), VITRAIL_CACHE_DIR, VITRAIL_BUILD_OPTIONS, VITRAIL_KERNEL_PATH.");
     Run run;
     addInfo(app, run);
     addShape(app, run);

@@ -32,12 +32,9 @@ Json vectorRecord(const Float3& v) { return Json::array({v.x, v.y, v.z}); }
 Json document(std::string_view verb) { return {{"schema", "vitrail." + std::string(verb) + ".1"}, {"version", VITRAIL_VERSION}}; }
 
 Json machineRecord(const DeviceInfo& device) {
-    Json machine{{"device", device.name},
-                 {"platform", device.platform},
-                 {"driver", device.driverVersion},
-                 {"computeUnits", device.computeUnits},
-                 {"compiler", VITRAIL_COMPILER},
-                 {"version", VITRAIL_VERSION}};
+    Json machine{{"device", device.name},          {"platform", device.platform},
+                 {"driver", device.driverVersion}, {"computeUnits", device.computeUnits},
+                 {"compiler", VITRAIL_COMPILER},   {"version", VITRAIL_VERSION}};
     if (const std::string commit = VITRAIL_COMMIT; !commit.empty()) machine["commit"] = commit;
     return machine;
 }
@@ -58,20 +55,28 @@ Json record(const DeviceInfo& device) {
 
 const char* name(Family family) {
     switch (family) {
-        case Family::surfaceVoxels: return "surfaceVoxels";
-        case Family::solidVoxels: return "solidVoxels";
-        case Family::glass: return "glass";
-        case Family::shadow: return "shadow";
+        case Family::surfaceVoxels:
+            return "surfaceVoxels";
+        case Family::solidVoxels:
+            return "solidVoxels";
+        case Family::glass:
+            return "glass";
+        case Family::shadow:
+            return "shadow";
     }
     return "";
 }
 
 const char* name(Guarantee guarantee) {
     switch (guarantee) {
-        case Guarantee::conservative: return "conservative";
-        case Guarantee::watertight: return "watertight";
-        case Guarantee::exact: return "exact";
-        case Guarantee::none: return "none";
+        case Guarantee::conservative:
+            return "conservative";
+        case Guarantee::watertight:
+            return "watertight";
+        case Guarantee::exact:
+            return "exact";
+        case Guarantee::none:
+            return "none";
     }
     return "";
 }
@@ -140,22 +145,14 @@ Json record(const VoxelReport& report) {
 }
 
 Json record(const ImageReport& report) {
-    return {{"effect", report.effect},
-            {"method", report.method},
-            {"triangles", report.triangles},
-            {"grid", vectorRecord(report.grid)},
-            {"occupied", report.occupied},
-            {"rays", report.rays},
-            {"lostRays", report.lostRays},
-            {"boundedRays", report.boundedRays},
-            {"voxelizeMs", report.voxelizeMs},
-            {"kernelMs", report.kernelMs},
-            {"wallMs", report.wallMs},
-            {"uploadMs", report.uploadMs},
-            {"buildMs", report.buildMs},
-            {"deviceBytes", report.deviceBytes},
-            {"device", report.device},
-            {"singlePrecision", report.singlePrecision}};
+    return {{"effect", report.effect},         {"method", report.method},
+            {"triangles", report.triangles},   {"grid", vectorRecord(report.grid)},
+            {"occupied", report.occupied},     {"rays", report.rays},
+            {"lostRays", report.lostRays},     {"boundedRays", report.boundedRays},
+            {"voxelizeMs", report.voxelizeMs}, {"kernelMs", report.kernelMs},
+            {"wallMs", report.wallMs},         {"uploadMs", report.uploadMs},
+            {"buildMs", report.buildMs},       {"deviceBytes", report.deviceBytes},
+            {"device", report.device},         {"singlePrecision", report.singlePrecision}};
 }
 
 Json record(const RayErrors& errors) {

@@ -30,8 +30,8 @@ Bounds parseBounds(const std::string& text) {
     }
     const Bounds bounds{{values[0], values[1], values[2]}, {values[3], values[4], values[5]}};
     if (count != 6 || at != end || bounds.empty()) {
-        throw Error(ErrorCode::badOption, {.what = "--bounds " + text + " is no box",
-                                           .remedy = "--bounds x0,y0,z0,x1,y1,z1 with x0 <= x1, y0 <= y1, z0 <= z1"});
+        throw Error(ErrorCode::badOption,
+                    {.what = "--bounds " + text + " is no box", .remedy = "--bounds x0,y0,z0,x1,y1,z1 with x0 <= x1, y0 <= y1, z0 <= z1"});
     }
     return bounds;
 }
@@ -41,7 +41,8 @@ Bounds parseBounds(const std::string& text) {
 double sinceStartMs() { return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - programStart).count(); }
 
 void DeviceOptions::add(CLI::App& verb) {
-    verb.add_option("--device", device, "first device whose \"platform / name\" contains this; `vitrail info` lists them")->type_name("NAME");
+    verb.add_option("--device", device, "first device whose \"platform / name\" contains this; `vitrail info` lists them")
+        ->type_name("NAME");
     verb.add_option("--precision", precision, "single: single precision decides the voxels, as on devices without doubles")
         ->check(CLI::IsMember({"best", "single"}))
         ->capture_default_str();
@@ -53,9 +54,7 @@ Device DeviceOptions::select() const {
     return selected;
 }
 
-void DeviceOptions::apply(Queue& queue) const {
-    queue.setPrecision(precision == "single" ? Precision::single : Precision::best);
-}
+void DeviceOptions::apply(Queue& queue) const { queue.setPrecision(precision == "single" ? Precision::single : Precision::best); }
 
 void GridOptions::add(CLI::App& verb, std::uint32_t defaultResolution) {
     resolution = defaultResolution;
@@ -96,7 +95,8 @@ void MethodOptions::add(CLI::App& verb, Family family) {
             }
             auto given = std::make_shared<Given>();
             given->name = option.name;
-            verb.add_option_function<double>(flag, [given](const double& value) { given->value = value; }, help)
+            verb.add_option_function<double>(
+                    flag, [given](const double& value) { given->value = value; }, help)
                 ->type_name("NUMBER")
                 ->group("Options of methods");
             all_.push_back(std::move(given));
@@ -114,8 +114,8 @@ std::vector<std::string> MethodOptions::given() const {
 std::vector<std::string> MethodOptions::givenFor(const Method& method) const {
     std::vector<std::string> texts;
     for (const std::shared_ptr<Given>& one : all_) {
-        const bool has = std::any_of(method.options.begin(), method.options.end(),
-                                     [&](const MethodOption& option) { return option.name == one->name; });
+        const bool has =
+            std::any_of(method.options.begin(), method.options.end(), [&](const MethodOption& option) { return option.name == one->name; });
         if (has && one->value) texts.push_back(one->name + "=" + numberText(*one->value));
     }
     return texts;
@@ -133,7 +133,8 @@ std::string voxelizerNames() { return methodNames(Family::surfaceVoxels) + ", " 
 void parseSize(const std::string& text, std::uint32_t& width, std::uint32_t& height) {
     char rest = 0;
     if (std::sscanf(text.c_str(), "%ux%u%c", &width, &height, &rest) != 2 || width == 0 || height == 0 || width > 8192 || height > 8192)
-        throw Error(ErrorCode::badOption, {.what = "--size " + text + " is no picture size", .remedy = "WIDTHxHEIGHT in pixels, 1 to 8192 each, such as 768x768"});
+        throw Error(ErrorCode::badOption, {.what = "--size " + text + " is no picture size",
+                                           .remedy = "WIDTHxHEIGHT in pixels, 1 to 8192 each, such as 768x768"});
 }
 
 GlassMethod glassMethod(const std::string& name, const MethodOptions& options) {

@@ -90,7 +90,7 @@ Mesh loadMesh(const std::string& file);
 /// Reads a scene to be lit: with normals, and turned around where it is closed but inside out.
 Scene loadLit(const std::string& file, float creaseDegrees);
 
-void print(const Json& document);       ///< on standard output
-void note(const std::string& line);     ///< on standard error, above the progress bar
+void print(const Json& document);    ///< on standard output
+void note(const std::string& line);  ///< on standard error, above the progress bar
 
 }  // namespace vitrail::cli

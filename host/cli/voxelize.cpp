@@ -28,18 +28,18 @@ struct Options {
 Channel channelSet(const std::vector<std::string>& names) {
     Channel set = Channel::none;
     for (const std::string& name : names)
-        set = set | (name == "count"      ? Channel::count
-                    : name == "normal" ? Channel::normal
-                    : name == "colour" ? Channel::colour
-                                       : Channel::material);
+        set = set | (name == "count"    ? Channel::count
+                     : name == "normal" ? Channel::normal
+                     : name == "colour" ? Channel::colour
+                                        : Channel::material);
     return set;
 }
 
 /// An array of `columns` little-endian values a row, as numpy.load reads it.
 template <class T>
 void saveArray(const std::filesystem::path& file, const char* type, const std::vector<T>& values, std::size_t columns) {
-    std::string header = "{'descr': '" + std::string(type) + "', 'fortran_order': False, 'shape': (" + std::to_string(values.size() / columns) +
-                         (columns == 1 ? ",)" : ", " + std::to_string(columns) + ")") + ", }";
+    std::string header = "{'descr': '" + std::string(type) + "', 'fortran_order': False, 'shape': (" +
+                         std::to_string(values.size() / columns) + (columns == 1 ? ",)" : ", " + std::to_string(columns) + ")") + ", }";
     header.append(63 - (10 + header.size()) % 64, ' ');
     header += '\n';
     io_detail::writeWhole(file, [&](const std::filesystem::path& temporary) {
@@ -49,7 +49,8 @@ void saveArray(const std::filesystem::path& file, const char* type, const std::v
         out << header;
         out.write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(values.size() * sizeof(T)));
         out.close();
-        if (!out) throw Error(ErrorCode::badFile, {.what = "the file cannot be written", .where = file.string(), .remedy = "room on the disk"});
+        if (!out)
+            throw Error(ErrorCode::badFile, {.what = "the file cannot be written", .where = file.string(), .remedy = "room on the disk"});
     });
 }
 
@@ -91,12 +92,13 @@ int runVoxelize(const Options& options) {
     const Voxelizer method = voxelizerByName(options.method, options.methodOptions.given(), channels);
     const std::filesystem::path output = options.output;
     if (channels != Channel::none && !output.empty() && output.extension() != ".npy") {
-        throw Error(ErrorCode::badOption, {.what = "--channels: " + options.output + " would hold which voxels are occupied, and no channels",
-                                           .remedy = "-o OUT.npy, beside which each channel becomes OUT.<channel>.npy"});
+        throw Error(ErrorCode::badOption,
+                    {.what = "--channels: " + options.output + " would hold which voxels are occupied, and no channels",
+                     .remedy = "-o OUT.npy, beside which each channel becomes OUT.<channel>.npy"});
     }
     if (!output.empty() && output.has_parent_path() && !std::filesystem::is_directory(output.parent_path())) {
-        throw Error(ErrorCode::badFile, {.what = "there is no folder to write to", .where = output.parent_path().string(),
-                                         .remedy = "a folder that exists"});
+        throw Error(ErrorCode::badFile,
+                    {.what = "there is no folder to write to", .where = output.parent_path().string(), .remedy = "a folder that exists"});
     }
 
     ProgressBar bar;
@@ -131,9 +133,9 @@ int runVoxelize(const Options& options) {
         return 0;
     }
     std::string text = options.mesh + ": " + countText(report.triangles) + " triangles in a grid of " + grid.text() + "\n" +
-                       countText(report.occupied) + " voxels by " + report.method + " in " + msText(report.kernelMs) + " ms on the device, " +
-                       msText(report.wallMs) + " ms in all (upload " + msText(report.uploadMs) + ", programs " + msText(report.buildMs) +
-                       "), " + detail::bytesText(report.deviceBytes) + " on the device" +
+                       countText(report.occupied) + " voxels by " + report.method + " in " + msText(report.kernelMs) +
+                       " ms on the device, " + msText(report.wallMs) + " ms in all (upload " + msText(report.uploadMs) + ", programs " +
+                       msText(report.buildMs) + "), " + detail::bytesText(report.deviceBytes) + " on the device" +
                        (report.bricks != 0 ? ", the voxels in " + countText(report.bricks) + " bricks" : "") + "\n";
     for (const std::string& file : files) text += file + "\n";
     std::fputs(text.c_str(), stdout);

@@ -77,10 +77,17 @@ std::uint64_t parseBytes(const std::string& text) {
     double factor = 1;
     if (used < text.size()) {
         switch (std::toupper(static_cast<unsigned char>(text[used]))) {
-            case 'K': factor = 1024.0; break;
-            case 'M': factor = 1024.0 * 1024; break;
-            case 'G': factor = 1024.0 * 1024 * 1024; break;
-            default: return 0;
+            case 'K':
+                factor = 1024.0;
+                break;
+            case 'M':
+                factor = 1024.0 * 1024;
+                break;
+            case 'G':
+                factor = 1024.0 * 1024 * 1024;
+                break;
+            default:
+                return 0;
         }
     }
     return value > 0 ? static_cast<std::uint64_t>(value * factor) : 0;
@@ -100,7 +107,8 @@ std::uint64_t defaultMemoryLimit(const DeviceInfo& info) {
     if (!asked.empty()) {
         const std::uint64_t bytes = parseBytes(asked);
         if (bytes == 0)
-            throw Error(ErrorCode::badOption, {"VITRAIL_MEMORY_LIMIT=\"" + asked + "\" is no number of bytes", "", "", "3G, 512M or 1000000"});
+            throw Error(ErrorCode::badOption,
+                        {"VITRAIL_MEMORY_LIMIT=\"" + asked + "\" is no number of bytes", "", "", "3G, 512M or 1000000"});
         return bytes;
     }
     return info.cpu ? std::max(cgroupLimit(), info.globalBytes) : info.globalBytes;
@@ -136,7 +144,8 @@ void DeviceState::warn(const std::string& line) {
 const char* clErrorName(cl_int code) {
     switch (code) {
 #define VITRAIL_NAME(x) \
-    case x: return #x
+    case x:             \
+        return #x
         VITRAIL_NAME(CL_DEVICE_NOT_FOUND);
         VITRAIL_NAME(CL_DEVICE_NOT_AVAILABLE);
         VITRAIL_NAME(CL_COMPILER_NOT_AVAILABLE);
@@ -170,8 +179,10 @@ const char* clErrorName(cl_int code) {
         VITRAIL_NAME(CL_INVALID_BUFFER_SIZE);
         VITRAIL_NAME(CL_INVALID_GLOBAL_WORK_SIZE);
 #undef VITRAIL_NAME
-        case -1001: return "CL_PLATFORM_NOT_FOUND_KHR";
-        default: return "an OpenCL error";
+        case -1001:
+            return "CL_PLATFORM_NOT_FOUND_KHR";
+        default:
+            return "an OpenCL error";
     }
 }
 
@@ -234,7 +245,8 @@ Device Device::select(const std::string& name) {
         }
     }
     if (best < 0)
-        throw Error(ErrorCode::noDevice, {"no OpenCL device matches \"" + wanted + "\"", "found: " + found, "", "a part of one of these names"});
+        throw Error(ErrorCode::noDevice,
+                    {"no OpenCL device matches \"" + wanted + "\"", "found: " + found, "", "a part of one of these names"});
     const cl::Device device = devices[static_cast<std::size_t>(best)];
     return detail::guarded(nullptr, "opening the device", [&] { return Device(detail::makeDeviceState(cl::Context(device), device)); });
 }

@@ -35,8 +35,9 @@ std::shared_ptr<detail::Memory> wrap(cl_mem memory, std::uint64_t bytes) {
         own->buffer = cl::Buffer(memory, true);
         own->bytes = own->buffer.getInfo<CL_MEM_SIZE>();
         if (own->bytes < bytes)
-            throw Error(ErrorCode::badInput, {"the caller's buffer has " + detail::bytesText(own->bytes) + ", " + detail::bytesText(bytes) + " are needed",
-                                              "", "", "a count that fits the buffer"});
+            throw Error(ErrorCode::badInput,
+                        {"the caller's buffer has " + detail::bytesText(own->bytes) + ", " + detail::bytesText(bytes) + " are needed", "",
+                         "", "a count that fits the buffer"});
         return own;
     });
 }

@@ -13,4 +13,4 @@ struct KernelFile {
 
 std::span<const KernelFile> kernelTable();
 
-}  // namespace vitrail::v0::detail
+}  // namespace vitrail::inline v0::detail

@@ -78,7 +78,7 @@ struct QueueState {
     std::shared_ptr<Pool> pool;
     std::map<std::string, cl::Kernel> kernels;
     std::map<std::string, Buffer<std::uint32_t>> kept;  // what a method makes once: Call::kept
-    std::vector<std::shared_ptr<Record>> records;  // of the calls under way, innermost last
+    std::vector<std::shared_ptr<Record>> records;       // of the calls under way, innermost last
     std::function<bool(const Progress&)> progress;
     Precision precision = Precision::best;
     Storage storage = Storage::automatic;

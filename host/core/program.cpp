@@ -50,7 +50,8 @@ void expand(const std::string& name, std::set<std::string>& seen, std::string& o
     if (!seen.insert(name).second) return;
     std::string text;
     if (!fileText(name, text))
-        throw Error(ErrorCode::buildFailed, {"kernel source \"" + name + "\" is not in the library", "", "", "a name relative to kernels/"});
+        throw Error(ErrorCode::buildFailed,
+                    {"kernel source \"" + name + "\" is not in the library", "", "", "a name relative to kernels/"});
     out += "#line 1 \"" + name + "\"\n";
     std::istringstream in(text);
     std::string line;
@@ -138,7 +139,9 @@ std::string expandPart(const std::string& part) {
     std::set<std::string> names;
     for (const KernelFile& file : kernelTable())
         if (file.name == part + ".cl" || std::string(file.name).rfind(part + "/", 0) == 0) names.insert(file.name);
-    if (names.empty()) throw Error(ErrorCode::buildFailed, {"there are no kernels of part \"" + part + "\"", "", "", "core, volume, voxelize, raster or light"});
+    if (names.empty())
+        throw Error(ErrorCode::buildFailed,
+                    {"there are no kernels of part \"" + part + "\"", "", "", "core, volume, voxelize, raster or light"});
     std::set<std::string> seen;
     std::string text;
     for (const std::string& name : names) expand(name, seen, text);
@@ -159,10 +162,9 @@ cl::Program program(DeviceState& device, const std::string& part, const std::str
         key.add(piece);
     std::string fileName = part;
     std::replace(fileName.begin(), fileName.end(), '/', '-');
-    const std::filesystem::path file =
-        device.cacheFolder.empty()
-            ? std::filesystem::path()
-            : std::filesystem::path(device.cacheFolder) / (fileName + "-" + key.text() + ".bin");
+    const std::filesystem::path file = device.cacheFolder.empty()
+                                           ? std::filesystem::path()
+                                           : std::filesystem::path(device.cacheFolder) / (fileName + "-" + key.text() + ".bin");
 
     if (!file.empty()) {
         if (const std::vector<unsigned char> binary = readCached(file); !binary.empty()) {
@@ -192,10 +194,10 @@ cl::Program program(DeviceState& device, const std::string& part, const std::str
             kept = (std::filesystem::path(device.cacheFolder) / (fileName + "-failed.cl")).string();
             std::ofstream(kept, std::ios::binary) << text;
         }
-        throw Error(ErrorCode::buildFailed, {"the kernels of part \"" + part + "\" do not compile with \"" + flags + "\": " +
-                                                 clErrorName(error.err()) + "\n" + log,
-                                             "device: " + device.text(), "",
-                                             kept.empty() ? "another device (--device)" : "another device (--device); expanded source: " + kept});
+        throw Error(ErrorCode::buildFailed,
+                    {"the kernels of part \"" + part + "\" do not compile with \"" + flags + "\": " + clErrorName(error.err()) + "\n" + log,
+                     "device: " + device.text(), "",
+                     kept.empty() ? "another device (--device)" : "another device (--device); expanded source: " + kept});
     }
     ++device.counters.programBuilds;
     if (!file.empty()) {

@@ -19,8 +19,8 @@ namespace {
 double milliseconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double, std::milli>(d).count(); }
 
 double eventMs(const cl::Event& event) {
-    return 1e-6 * static_cast<double>(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
-                                      event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
+    return 1e-6 *
+           static_cast<double>(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() - event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
 }
 
 void note(QueueState& queue, std::vector<cl::Event> Record::*list, const cl::Event& event) {
@@ -38,8 +38,7 @@ constexpr std::uint64_t kPage = 2 << 20, kPagedLeast = 16 << 20;
 cl::Buffer makeBuffer(const DeviceState& device, std::uint64_t bytes) {
 #if defined(__linux__)
     if (device.info.cpu && bytes >= kPagedLeast) {
-        std::unique_ptr<void, decltype(&std::free)> host(std::aligned_alloc(kPage, (bytes + kPage - 1) / kPage * kPage),
-                                                         &std::free);
+        std::unique_ptr<void, decltype(&std::free)> host(std::aligned_alloc(kPage, (bytes + kPage - 1) / kPage * kPage), &std::free);
         if (host != nullptr) {
             madvise(host.get(), bytes, MADV_HUGEPAGE);
             cl::Buffer buffer(device.context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, host.get());
@@ -265,8 +264,8 @@ void Call::endLaunch(void* handle, const char* kernel, std::uint64_t count, std:
     const std::string during = name_ + " (" + kernel + ")";
     guarded(state.device.get(), during.c_str(), [&] {
         cl::Event event;
-        state.queue.enqueueNDRangeKernel(*static_cast<cl::Kernel*>(handle), cl::NullRange,
-                                         cl::NDRange((count + local - 1) / local * local), cl::NDRange(local), nullptr, &event);
+        state.queue.enqueueNDRangeKernel(*static_cast<cl::Kernel*>(handle), cl::NullRange, cl::NDRange((count + local - 1) / local * local),
+                                         cl::NDRange(local), nullptr, &event);
         note(state, &Record::kernels, event);
     });
     ++state.device->counters.launches;
@@ -279,8 +278,8 @@ void Call::uploadMemory(Memory& memory, const void* values, std::uint64_t bytes)
 
 Queue::Queue(Device& device)
     : Queue(detail::guarded(device.state().get(), "making a command queue", [&] {
-          return detail::makeQueueState(
-              device.state(), cl::CommandQueue(device.state()->context, device.state()->device, CL_QUEUE_PROFILING_ENABLE));
+          return detail::makeQueueState(device.state(),
+                                        cl::CommandQueue(device.state()->context, device.state()->device, CL_QUEUE_PROFILING_ENABLE));
       })) {}
 Queue::Queue(std::shared_ptr<detail::QueueState> state) : state_(std::move(state)), workspace_(state_) {}
 Queue::Queue(Queue&&) noexcept = default;

@@ -31,12 +31,10 @@ void grow(DeviceMesh& out, const DeviceMesh& rest, float most) {
 Deformed displace(Queue& queue, const DeviceMesh& rest, const Buffer<float>& amounts, float most, DeviceMesh& out) {
     checkDisplaced(rest, most, out);
     if (amounts.size() != rest.vertexCount())
-        detail::failDeform("displace",
-                           std::to_string(amounts.size()) + " amounts for " + std::to_string(rest.vertexCount()) + " vertices",
+        detail::failDeform("displace", std::to_string(amounts.size()) + " amounts for " + std::to_string(rest.vertexCount()) + " vertices",
                            "one amount a vertex");
     detail::Call call(queue, "displacing " + std::to_string(rest.vertexCount()) + " vertices");
-    call.launchRange(detail::kDeform, "displace_amounts", rest.vertexCount(), rest.positions(), rest.normals(), amounts,
-                     out.positions());
+    call.launchRange(detail::kDeform, "displace_amounts", rest.vertexCount(), rest.positions(), rest.normals(), amounts, out.positions());
     grow(out, rest, most);
     return Deformed(call.record());
 }
@@ -48,8 +46,8 @@ Deformed displace(Queue& queue, const DeviceMesh& rest, const Wave& wave, Device
         if (!std::isfinite(vector[c]))
             detail::failDeform("displace", "a number of the wave is not finite", "radians, and radians a scene unit");
     detail::Call call(queue, "displacing " + std::to_string(rest.vertexCount()) + " vertices");
-    call.launchRange(detail::kDeform, "displace_wave", rest.vertexCount(), rest.positions(), rest.normals(), vector,
-                     wave.amplitude, out.positions());
+    call.launchRange(detail::kDeform, "displace_wave", rest.vertexCount(), rest.positions(), rest.normals(), vector, wave.amplitude,
+                     out.positions());
     grow(out, rest, std::fabs(wave.amplitude));
     return Deformed(call.record());
 }

@@ -10,13 +10,12 @@ void failDeform(const char* name, const std::string& what, const std::string& re
 
 void checkMeshes(const char* name, const DeviceMesh& rest, const DeviceMesh& out) {
     if (rest.vertexCount() != out.vertexCount())
-        failDeform(name,
-                   "the mesh at rest has " + std::to_string(rest.vertexCount()) + " vertices, the moved one " +
-                       std::to_string(out.vertexCount()),
-                   "a moved mesh made by rest.withOwnVertices(queue)");
+        failDeform(
+            name,
+            "the mesh at rest has " + std::to_string(rest.vertexCount()) + " vertices, the moved one " + std::to_string(out.vertexCount()),
+            "a moved mesh made by rest.withOwnVertices(queue)");
     if (rest.vertexCount() != 0 && &rest.positions().memory() == &out.positions().memory())
-        failDeform(name, "the mesh at rest would be overwritten by the moved one",
-                   "a moved mesh made by rest.withOwnVertices(queue)");
+        failDeform(name, "the mesh at rest would be overwritten by the moved one", "a moved mesh made by rest.withOwnVertices(queue)");
 }
 
 }  // namespace detail

@@ -93,8 +93,7 @@ Grid::Grid(const vitrail_GridDesc& desc) : desc_(desc) {
         }
     }
     for (const vitrail_float4& v : {desc.axisX, desc.axisY, desc.axisZ}) {
-        if (std::abs(dot(wide(v), wide(v)) - 1) > 1e-5)
-            fail(ErrorCode::badOption, "an axis is not of length 1", "unit directions");
+        if (std::abs(dot(wide(v), wide(v)) - 1) > 1e-5) fail(ErrorCode::badOption, "an axis is not of length 1", "unit directions");
     }
     if (isBox()) {
         checkEdge(desc.extent.x);
@@ -106,8 +105,7 @@ Grid::Grid(const vitrail_GridDesc& desc) : desc_(desc) {
     } else {
         const bool perspective = desc.kind == VITRAIL_GRID_PERSPECTIVE;
         if (!(desc.extent.x > 0 && desc.extent.y > 0)) {
-            fail(ErrorCode::badOption, "a window of " + formatted(desc.extent.x) + " by " + formatted(desc.extent.y),
-                 "half sizes above 0");
+            fail(ErrorCode::badOption, "a window of " + formatted(desc.extent.x) + " by " + formatted(desc.extent.y), "half sizes above 0");
         }
         if (!(desc.extent.z < desc.extent.w) || (perspective && !(desc.extent.z > 0))) {
             fail(ErrorCode::badOption, "depths from " + formatted(desc.extent.z) + " to " + formatted(desc.extent.w),
@@ -121,8 +119,7 @@ Grid::Grid(const vitrail_GridDesc& desc) : desc_(desc) {
 
 Grid Grid::fit(const Bounds& bounds, std::uint32_t longestAxis, double padding) {
     if (longestAxis == 0 || longestAxis > kMostCells) {
-        fail(ErrorCode::badOption, std::to_string(longestAxis) + " voxels along the longest axis",
-             "1 to " + std::to_string(kMostCells));
+        fail(ErrorCode::badOption, std::to_string(longestAxis) + " voxels along the longest axis", "1 to " + std::to_string(kMostCells));
     }
     if (!(padding >= 0 && padding <= 1000)) {
         fail(ErrorCode::badOption, "a padding of " + formatted(padding), "0 to 1000 times the longest edge");
@@ -145,8 +142,7 @@ Grid Grid::fit(const Bounds& bounds, std::uint32_t longestAxis, double padding) 
     }
     float edge = roundedUp(edgeNeeded);
     if (!std::isfinite(origin.x) || !std::isfinite(origin.y) || !std::isfinite(origin.z) || !std::isfinite(edge)) {
-        fail(ErrorCode::badInput,
-             "bounds of " + formatted(size[axis]) + " world units and their padding exceed what floats reach",
+        fail(ErrorCode::badInput, "bounds of " + formatted(size[axis]) + " world units and their padding exceed what floats reach",
              "a mesh scaled down, or less padding");
     }
     if (edge < FLT_MIN) {
@@ -178,8 +174,7 @@ Grid Grid::withVoxelSize(float edge, const Bounds& bounds, bool alignToOrigin) {
         const double cells = std::ceil((double(bounds.high[i]) - double(origin[i])) / double(edge));
         if (!(cells <= kMostCells)) {
             fail(ErrorCode::badOption, "voxels of edge " + formatted(edge) + " would be " + formatted(cells) + " along one axis",
-                 "an edge of at least " +
-                     formatted((double(bounds.high[i]) - double(bounds.low[i])) / (kMostCells - 1) * (1 + 1e-5)) +
+                 "an edge of at least " + formatted((double(bounds.high[i]) - double(bounds.low[i])) / (kMostCells - 1) * (1 + 1e-5)) +
                      " world units");
         }
         count[i] = std::max(1u, static_cast<std::uint32_t>(cells));
@@ -189,9 +184,7 @@ Grid Grid::withVoxelSize(float edge, const Bounds& bounds, bool alignToOrigin) {
 
 Grid Grid::box(Float3 origin, float edge, Uint3 size) { return Grid(boxDesc(origin, edge, size)); }
 
-std::uint64_t Grid::wordCount() const {
-    return std::uint64_t(desc_.tilesX) * desc_.tilesY * desc_.size.w * VITRAIL_WORDS_PER_TILE;
-}
+std::uint64_t Grid::wordCount() const { return std::uint64_t(desc_.tilesX) * desc_.tilesY * desc_.size.w * VITRAIL_WORDS_PER_TILE; }
 
 // kernels/lib/grid.cl repeats this operation by operation, in this order and without contraction, so that host and device put a
 // point into the same voxel. Whoever changes one changes both.

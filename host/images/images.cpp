@@ -22,8 +22,8 @@ OIIO::ImageSpec specOf(const ImageSize& size, OIIO::TypeDesc type) {
     return {static_cast<int>(size.width), static_cast<int>(size.height), static_cast<int>(size.channels), type};
 }
 
-void write(const std::filesystem::path& file, const char* format, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
-           const void* values, const std::string& name) {
+void write(const std::filesystem::path& file, const char* format, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const void* values,
+           const std::string& name) {
     const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
     const bool good = output && output->open(file.string(), spec) && output->write_image(type, values) && output->close();
     std::string reason = output ? output->geterror() : std::string();
@@ -37,12 +37,10 @@ StoredImage decodeImage(std::span<const std::byte> bytes, const std::string& for
     std::unique_ptr<OIIO::ImageInput> input = format.empty() ? nullptr : OIIO::ImageInput::create(format);
     if (!input) {
         reasonOf(nullptr);
-        failPicture("its first bytes are those of no known format", name, ".hdr, .exr, .png, .jpg, .tif or .webp",
-                    ErrorCode::unsupported);
+        failPicture("its first bytes are those of no known format", name, ".hdr, .exr, .png, .jpg, .tif or .webp", ErrorCode::unsupported);
     }
     if (!input->supports("ioproxy")) {
-        failPicture("the format " + format + " is not read", name, ".hdr, .exr, .png, .jpg, .tif or .webp",
-                    ErrorCode::unsupported);
+        failPicture("the format " + format + " is not read", name, ".hdr, .exr, .png, .jpg, .tif or .webp", ErrorCode::unsupported);
     }
     OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(bytes.data()), bytes.size());
     OIIO::ImageSpec config, spec;
@@ -53,8 +51,7 @@ StoredImage decodeImage(std::span<const std::byte> bytes, const std::string& for
 
     expectPictureSize(spec.width, spec.height, bytes.size(), name);
     if (spec.depth > 1 || spec.nchannels <= 0 || spec.nchannels > 64) {
-        failPicture(std::to_string(spec.nchannels) + " channels, " + std::to_string(spec.depth) + " deep", name,
-                    "a flat picture");
+        failPicture(std::to_string(spec.nchannels) + " channels, " + std::to_string(spec.depth) + " deep", name, "a flat picture");
     }
     const auto w = static_cast<std::uint32_t>(spec.width), h = static_cast<std::uint32_t>(spec.height);
 
@@ -78,8 +75,7 @@ void encodeExr(const std::filesystem::path& file, const ImageSize& size, std::sp
     write(file, "openexr", spec, OIIO::TypeDesc::FLOAT, values.data(), name);
 }
 
-void encodePng(const std::filesystem::path& file, const ImageSize& size, std::span<const std::uint8_t> values,
-               const std::string& name) {
+void encodePng(const std::filesystem::path& file, const ImageSize& size, std::span<const std::uint8_t> values, const std::string& name) {
     OIIO::ImageSpec spec = specOf(size, OIIO::TypeDesc::UINT8);
     spec.attribute("oiio:UnassociatedAlpha", 1);
     spec.attribute("oiio:ColorSpace", "sRGB");

@@ -31,8 +31,7 @@ struct ImageSize {
 void encodeExr(const std::filesystem::path& file, const ImageSize& size, std::span<const float> values, const std::string& name);
 
 /// From values of sRGB, alpha not multiplied in. Throws Error (badFile).
-void encodePng(const std::filesystem::path& file, const ImageSize& size, std::span<const std::uint8_t> values,
-               const std::string& name);
+void encodePng(const std::filesystem::path& file, const ImageSize& size, std::span<const std::uint8_t> values, const std::string& name);
 
 [[noreturn]] inline void failPicture(const std::string& what, const std::string& name, const std::string& remedy = {},
                                      ErrorCode code = ErrorCode::badFile) {

@@ -79,8 +79,7 @@ void writeWhole(const fs::path& file, const std::function<void(const fs::path&)>
     const fs::file_status status = fs::status(file, error);
     if (fs::is_directory(status)) fail("this is a folder; the name of a file was expected", file);
     // Renaming onto a device or pipe would put a file in its place.
-    if (fs::exists(status) && !fs::is_regular_file(status))
-        fail("this is neither a file nor a new name", file, "the name of a file");
+    if (fs::exists(status) && !fs::is_regular_file(status)) fail("this is neither a file nor a new name", file, "the name of a file");
     if (file.filename().empty()) fail("this is no name of a file", file);
     fs::path target = file;
     if (fs::is_symlink(fs::symlink_status(file, error)) && fs::exists(status)) target = fs::canonical(file);

@@ -126,12 +126,10 @@ private:
         std::vector<int> roots;
         if (!model_.scenes.empty()) {
             const int chosen = std::max(model_.defaultScene, 0);
-            if (static_cast<std::size_t>(chosen) >= model_.scenes.size())
-                fail("there is no scene " + std::to_string(chosen), "scene");
+            if (static_cast<std::size_t>(chosen) >= model_.scenes.size()) fail("there is no scene " + std::to_string(chosen), "scene");
             roots = model_.scenes[static_cast<std::size_t>(chosen)].nodes;
             if (model_.scenes.size() > 1) {
-                warn("of " + std::to_string(model_.scenes.size()) + " scenes only number " + std::to_string(chosen) +
-                     " was read");
+                warn("of " + std::to_string(model_.scenes.size()) + " scenes only number " + std::to_string(chosen) + " was read");
             }
         } else {
             std::vector<char> isChild(model_.nodes.size(), 0);
@@ -169,10 +167,8 @@ private:
             }
             cameraNode_ = n;
         }
-        if (const auto light = node.extensions.find("KHR_lights_punctual"); light != node.extensions.end())
-            readLight(n, light->second);
-        if (node.extensions.count("EXT_mesh_gpu_instancing") != 0)
-            warn("node " + std::to_string(n) + ": its GPU instances are left out");
+        if (const auto light = node.extensions.find("KHR_lights_punctual"); light != node.extensions.end()) readLight(n, light->second);
+        if (node.extensions.count("EXT_mesh_gpu_instancing") != 0) warn("node " + std::to_string(n) + ": its GPU instances are left out");
         if (node.mesh < 0) return;
         if (static_cast<std::size_t>(node.mesh) >= model_.meshes.size()) {
             fail("there is no mesh " + std::to_string(node.mesh), at("nodes", n));
@@ -184,8 +180,7 @@ private:
         for (std::size_t p = 0; p < model_.meshes[m].primitives.size(); ++p) {
             const tinygltf::Primitive& primitive = model_.meshes[m].primitives[p];
             const std::string place = primitivePlace({n, m, p});
-            if (primitive.mode < 0 || primitive.mode > 6)
-                fail("mode " + std::to_string(primitive.mode) + " is none of 0 to 6", place);
+            if (primitive.mode < 0 || primitive.mode > 6) fail("mode " + std::to_string(primitive.mode) + " is none of 0 to 6", place);
             if (primitive.mode < TINYGLTF_MODE_TRIANGLES) {
                 warn(place + ": points and lines are left out");
             } else if (primitive.attributes.count("POSITION") == 0) {
@@ -196,15 +191,12 @@ private:
         }
     }
 
-    static std::string primitivePlace(const Placed& one) {
-        return at("meshes", one.mesh) + "." + at("primitives", one.primitive);
-    }
+    static std::string primitivePlace(const Placed& one) { return at("meshes", one.mesh) + "." + at("primitives", one.primitive); }
 
     void readLight(std::size_t n, const tinygltf::Value& extension) {
         const tinygltf::Value* index = extension.Has("light") ? &extension.Get("light") : nullptr;
         const int i = index != nullptr && index->IsInt() ? index->GetNumberAsInt() : -1;
-        if (i < 0 || static_cast<std::size_t>(i) >= model_.lights.size())
-            fail("there is no light " + std::to_string(i), at("nodes", n));
+        if (i < 0 || static_cast<std::size_t>(i) >= model_.lights.size()) fail("there is no light " + std::to_string(i), at("nodes", n));
         const tinygltf::Light& light = model_.lights[static_cast<std::size_t>(i)];
         if (light.type != "directional" || lightRead_) {
             warn("node " + std::to_string(n) + ": the " + light.type + " light is left out" +
@@ -233,8 +225,7 @@ private:
         camera.eye = Float3(glm::dvec3(world[3]));
         const Float3 forward = unitOrZero(-glm::dvec3(world[2])), up = unitOrZero(glm::dvec3(world[1]));
         double aspect = 1.0;
-        bool good =
-            finite(camera.eye) && forward != Float3(0.0f) && up != Float3(0.0f) && std::abs(glm::dot(forward, up)) < 0.999f;
+        bool good = finite(camera.eye) && forward != Float3(0.0f) && up != Float3(0.0f) && std::abs(glm::dot(forward, up)) < 0.999f;
         if (from.type == "orthographic") {
             camera.orthographicHeight = static_cast<float>(2.0 * std::abs(from.orthographic.ymag));
             aspect = std::abs(from.orthographic.xmag / from.orthographic.ymag);
@@ -312,8 +303,8 @@ private:
         }
         m.alphaCutoff = inRange(from.alphaCutoff, 0, 1e30, called, "alphaCutoff");
         m.doubleSided = from.doubleSided;
-        m.transmission = inRange(number(extensions, "KHR_materials_transmission", "transmissionFactor", 0), 0, 1, called,
-                                 "transmissionFactor");
+        m.transmission =
+            inRange(number(extensions, "KHR_materials_transmission", "transmissionFactor", 0), 0, 1, called, "transmissionFactor");
         m.indexOfRefraction = inRange(number(extensions, "KHR_materials_ior", "ior", 1.5), 1, 3, called, "ior");
         readVolume(extensions, called, m);
         readEmission(from, called, m);
@@ -326,8 +317,7 @@ private:
     void readVolume(const tinygltf::ExtensionMap& extensions, const std::string& called, Material& m) {
         constexpr const char* kVolume = "KHR_materials_volume";
         m.thickness = inRange(number(extensions, kVolume, "thicknessFactor", 0), 0, 1e30, called, "thicknessFactor");
-        m.attenuationDistance =
-            inRange(number(extensions, kVolume, "attenuationDistance", 0), 0, 3e38, called, "attenuationDistance");
+        m.attenuationDistance = inRange(number(extensions, kVolume, "attenuationDistance", 0), 0, 3e38, called, "attenuationDistance");
         if (!hasMember(extensions, kVolume, "attenuationColor")) return;
         const tinygltf::Value& colour = extensions.at(kVolume).Get("attenuationColor");
         for (int c = 0; c < 3; ++c) {
@@ -343,8 +333,7 @@ private:
         if (from.emissiveFactor.size() != 3) return;
         const double strength = number(from.extensions, "KHR_materials_emissive_strength", "emissiveStrength", 1);
         for (int c = 0; c < 3; ++c) {
-            m.emission[c] =
-                inRange(from.emissiveFactor[static_cast<std::size_t>(c)] * strength, 0, 1e30, called, "emissiveFactor");
+            m.emission[c] = inRange(from.emissiveFactor[static_cast<std::size_t>(c)] * strength, 0, 1e30, called, "emissiveFactor");
         }
         // The factor of a textured glow is mostly 1 and the texture mostly black: without it the whole surface would shine.
         if (from.emissiveTexture.index >= 0 && m.emission != Float3(0.0f)) {
@@ -418,13 +407,15 @@ private:
         if (from.roughness >= 0) roughness = picture(static_cast<std::size_t>(from.roughness));
         Picture both(std::max(transmission.width, roughness.width), std::max(transmission.height, roughness.height));
         const auto at = [&](const Picture& one, std::uint32_t x, std::uint32_t y) {
-            return one.at(static_cast<std::uint32_t>(std::uint64_t(x) * one.width / both.width), static_cast<std::uint32_t>(std::uint64_t(y) * one.height / both.height));
+            return one.at(static_cast<std::uint32_t>(std::uint64_t(x) * one.width / both.width),
+                          static_cast<std::uint32_t>(std::uint64_t(y) * one.height / both.height));
         };
         for (std::uint32_t y = 0; y < both.height; ++y)
             for (std::uint32_t x = 0; x < both.width; ++x) {
                 const Float4 rough = at(roughness, x, y);
                 const float metal = from.roughness >= 0 ? stored(rough.z) * from.metallic : 0.0f;
-                both.at(x, y) = Float4(stored(at(transmission, x, y).x) * (1.0f - metal), from.roughness >= 0 ? stored(rough.y) : 1.0f, 0.0f, 1.0f);
+                both.at(x, y) =
+                    Float4(stored(at(transmission, x, y).x) * (1.0f - metal), from.roughness >= 0 ? stored(rough.y) : 1.0f, 0.0f, 1.0f);
             }
         return both;
     }
@@ -446,8 +437,8 @@ private:
                     scene_.textures.push_back(picture(static_cast<std::size_t>(image)));
                     entry->second = static_cast<int>(scene_.textures.size()) - 1;
                 } catch (const Error& error) {
-                    warn("picture " + std::to_string(image) + " is missing or broken, the plain base colour holds (" +
-                         error.text().what + ")");
+                    warn("picture " + std::to_string(image) + " is missing or broken, the plain base colour holds (" + error.text().what +
+                         ")");
                 }
             }
             scene_.materials[i].baseColourTexture = entry->second;
@@ -550,8 +541,7 @@ private:
                 fail(std::to_string(other->count) + " values of an attribute for " + std::to_string(count) + " vertices", place);
             }
         }
-        if (mesh.positions.size() + count > kMostCounted)
-            fail("more than 2^32 vertices", place, "fewer instances", ErrorCode::unsupported);
+        if (mesh.positions.size() + count > kMostCounted) fail("more than 2^32 vertices", place, "fewer instances", ErrorCode::unsupported);
 
         Vertices added;
         added.first = static_cast<std::uint32_t>(mesh.positions.size());
@@ -569,8 +559,7 @@ private:
                 added.mirrored[poses.empty() ? 0 : i] = glm::determinant(linear) < 0;
             }
             mesh.positions.push_back(Float3(glm::dvec3(m * glm::dvec4(glm::dvec3(positions.float3(i)), 1.0))));
-            if (anyNormals_)
-                mesh.normals.push_back(normals.empty() ? Float3(0.0f) : unitOrZero(turn * glm::dvec3(normals.float3(i))));
+            if (anyNormals_) mesh.normals.push_back(normals.empty() ? Float3(0.0f) : unitOrZero(turn * glm::dvec3(normals.float3(i))));
             if (rig_.wanted()) {
                 rig_.addVertex(positions.float3(i), normals.empty() ? Float3(0.0f) : unitOrZero(glm::dvec3(normals.float3(i))),
                                follows.followed[poses.empty() ? 0 : i]);
@@ -626,8 +615,8 @@ private:
             corners = indices(from.indices, place + ".indices");
             for (std::size_t i = 0; i < corners.size(); ++i) {
                 if (corners[i] >= count) {
-                    fail("index " + std::to_string(i) + " is " + std::to_string(corners[i]) + ", but there are " +
-                             std::to_string(count) + " vertices",
+                    fail("index " + std::to_string(i) + " is " + std::to_string(corners[i]) + ", but there are " + std::to_string(count) +
+                             " vertices",
                          place + ".indices");
                 }
             }
@@ -676,8 +665,7 @@ private:
         const glm::dvec3 a(mesh.positions[first + corners[0]]), b(mesh.positions[first + corners[1]]),
             c(mesh.positions[first + corners[2]]);
         const Float3 normal = unitOrZero(glm::cross(b - a, c - a));
-        if (mesh.positions.size() + 3 > kMostCounted)
-            fail("more than 2^32 vertices", "", "fewer instances", ErrorCode::unsupported);
+        if (mesh.positions.size() + 3 > kMostCounted) fail("more than 2^32 vertices", "", "fewer instances", ErrorCode::unsupported);
         Float3 atRest(0.0f);  // of the winding before a mirror turned it
         if (rig_.wanted()) {
             const auto p = [&](std::size_t k) { return glm::dvec3(rig_.position(first + corners[k])); };

@@ -30,8 +30,7 @@ std::string percentDecoded(const std::string& uri) {
     std::string text;
     for (std::size_t i = 0; i < uri.size(); ++i) {
         const auto digit = [&](std::size_t k) {
-            return k < uri.size() && std::isxdigit(static_cast<unsigned char>(uri[k])) ? std::stoi(uri.substr(k, 1), nullptr, 16)
-                                                                                       : -1;
+            return k < uri.size() && std::isxdigit(static_cast<unsigned char>(uri[k])) ? std::stoi(uri.substr(k, 1), nullptr, 16) : -1;
         };
         if (uri[i] == '%' && digit(i + 1) >= 0 && digit(i + 2) >= 0) {
             text.push_back(static_cast<char>(digit(i + 1) * 16 + digit(i + 2)));
@@ -89,8 +88,7 @@ void GltfDocument::parse() {
     const std::string version = versionOf("version"), least = versionOf("minVersion");
     if (version.empty()) fail("no asset.version", "asset", "a .gltf or .glb file of version 2.0");
     if (!version.starts_with("2.") || (!least.empty() && least != "2.0")) {
-        fail("version " + (least.empty() ? version : least) + " is not read", "asset", "an export as glTF 2.0",
-             ErrorCode::unsupported);
+        fail("version " + (least.empty() ? version : least) + " is not read", "asset", "an export as glTF 2.0", ErrorCode::unsupported);
     }
     takeList("buffers", buffers_);
     takeList("images", images_);
@@ -134,21 +132,18 @@ std::string_view GltfDocument::openBinary() {
     const Bytes all = source_.bytes;
     if (all.size() < 20) fail("the header ends at byte " + std::to_string(all.size()) + " of 20", "", "the whole file");
     if (const std::uint32_t version = readU32(all, 4); version != 2) {
-        fail("a binary file of version " + std::to_string(version) + " is not read", "", "an export as glTF 2.0",
-             ErrorCode::unsupported);
+        fail("a binary file of version " + std::to_string(version) + " is not read", "", "an export as glTF 2.0", ErrorCode::unsupported);
     }
     const std::size_t length = readU32(all, 8);
     if (length > all.size() || length < 20) {
-        fail("the file has " + std::to_string(all.size()) + " bytes where its header says " + std::to_string(length), "",
-             "the whole file");
+        fail("the file has " + std::to_string(all.size()) + " bytes where its header says " + std::to_string(length), "", "the whole file");
     }
     std::string_view text;
     for (std::size_t start = 12; start + 8 <= length;) {
         const std::size_t size = readU32(all, start);
         const std::uint32_t kind = readU32(all, start + 4);
         if (size > length - start - 8) {
-            fail("a chunk of " + std::to_string(size) + " bytes runs past the end", "byte " + std::to_string(start),
-                 "the whole file");
+            fail("a chunk of " + std::to_string(size) + " bytes runs past the end", "byte " + std::to_string(start), "the whole file");
         }
         const Bytes chunk = all.subspan(start + 8, size);
         if (start == 12) {
@@ -280,12 +275,10 @@ std::size_t GltfDocument::forEachNumber(int index, const std::string& user, F&& 
         fail("componentType " + std::to_string(a.componentType) + " is none of glTF 2.0", place);
     }
     const auto element = static_cast<std::size_t>(size * width);
-    const auto run = [&](Bytes bytes, std::size_t offset, std::size_t stride, std::size_t count, auto&& target,
-                         const char* what) {
+    const auto run = [&](Bytes bytes, std::size_t offset, std::size_t stride, std::size_t count, auto&& target, const char* what) {
         if (stride < element) fail("byteStride " + std::to_string(stride) + " is shorter than an element", place);
         // Every element takes a byte at least, which keeps the product below from overflowing.
-        if (count > bytes.size() || offset > bytes.size() ||
-            (count != 0 && (count - 1) * stride + element > bytes.size() - offset)) {
+        if (count > bytes.size() || offset > bytes.size() || (count != 0 && (count - 1) * stride + element > bytes.size() - offset)) {
             fail(std::to_string(count) + what + " of " + std::to_string(element) + " bytes from byte " + std::to_string(offset) +
                      " do not fit the buffer view of " + std::to_string(bytes.size()) + " bytes",
                  place, "the whole file, or a check with the Khronos glTF validator");
@@ -294,8 +287,7 @@ std::size_t GltfDocument::forEachNumber(int index, const std::string& user, F&& 
             const std::size_t to = target(i);
             for (int c = 0; c < width; ++c) {
                 store(to, c,
-                      component(bytes.data() + offset + i * stride + static_cast<std::size_t>(c * size), a.componentType,
-                                a.normalized));
+                      component(bytes.data() + offset + i * stride + static_cast<std::size_t>(c * size), a.componentType, a.normalized));
             }
         }
     };
@@ -356,9 +348,8 @@ std::vector<std::uint32_t> GltfDocument::indices(int index, const std::string& u
         fail("indices must be unsigned whole numbers", place);
     }
     std::vector<std::uint32_t> result(checkedCount(a, place), 0);
-    forEachNumber(index, user, [&](std::size_t i, int, double value) {
-        result[i] = value < 0 ? 0xffffffffu : static_cast<std::uint32_t>(value);
-    });
+    forEachNumber(index, user,
+                  [&](std::size_t i, int, double value) { result[i] = value < 0 ? 0xffffffffu : static_cast<std::uint32_t>(value); });
     return result;
 }
 

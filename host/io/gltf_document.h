@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include <nlohmann/json.hpp>
 #include <tiny_gltf.h>
+#include <nlohmann/json.hpp>
 
 #include <vitrail/core/error.h>
 #include <vitrail/core/vector.h>
@@ -46,8 +46,8 @@ public:
     const tinygltf::Model& model() const { return model_; }
     const nlohmann::json& images() const { return images_; }
     const nlohmann::json& animations() const { return animations_; }  ///< objects, otherwise unchecked; none where only a mesh is wanted
-    std::size_t bytes() const;  ///< of the file and of the buffers that were opened
-    std::vector<std::string> warnings;  ///< each sentence once
+    std::size_t bytes() const;                                        ///< of the file and of the buffers that were opened
+    std::vector<std::string> warnings;                                ///< each sentence once
 
     void warn(const std::string& sentence);
     [[noreturn]] void fail(const std::string& what, const std::string& place = {}, const std::string& remedy = {},

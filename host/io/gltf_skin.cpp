@@ -74,9 +74,8 @@ glm::dmat4 localTransform(const GltfDocument& document, std::size_t n) {
     const tinygltf::Node& node = document.model().nodes[n];
     const auto expect = [&](const std::vector<double>& values, std::size_t size, const char* what) {
         if (!values.empty() && values.size() != size) {
-            document.fail(
-                std::string(what) + " has " + std::to_string(values.size()) + " numbers instead of " + std::to_string(size),
-                at("nodes", n));
+            document.fail(std::string(what) + " has " + std::to_string(values.size()) + " numbers instead of " + std::to_string(size),
+                          at("nodes", n));
         }
         return !values.empty();
     };
@@ -105,9 +104,7 @@ void GltfRig::repaired(const std::string& sentence) {
     if (std::find(repairs_.begin(), repairs_.end(), sentence) == repairs_.end()) repairs_.push_back(sentence);
 }
 
-std::uint16_t GltfRig::jointOf(std::size_t skin, std::size_t joint) {
-    return static_cast<std::uint16_t>(firstJoint_.at(skin) + joint);
-}
+std::uint16_t GltfRig::jointOf(std::size_t skin, std::size_t joint) { return static_cast<std::uint16_t>(firstJoint_.at(skin) + joint); }
 
 std::uint16_t GltfRig::jointOfNode(std::size_t node) {
     if (const auto found = jointOfNode_.find(node); found != jointOfNode_.end()) return found->second;
@@ -130,9 +127,8 @@ std::vector<glm::dmat4> GltfRig::palette(std::size_t index) {
     if (skin.inverseBindMatrices >= 0) {
         inverse = document_.attribute(skin.inverseBindMatrices, place + ".inverseBindMatrices", {16});
         if (inverse.count < skin.joints.size()) {
-            document_.fail(
-                std::to_string(inverse.count) + " inverse bind matrices for " + std::to_string(skin.joints.size()) + " joints",
-                place);
+            document_.fail(std::to_string(inverse.count) + " inverse bind matrices for " + std::to_string(skin.joints.size()) + " joints",
+                           place);
         }
     }
     const bool isNew = wanted_ && firstJoint_.try_emplace(index, skin_.joints.size()).second;
@@ -179,8 +175,7 @@ GltfPoses GltfRig::pose(std::size_t node, const tinygltf::Primitive& primitive, 
         if (accessorOf(jointName) < 0 || accessorOf(weightName) < 0) break;
         const GltfAttribute joints = document_.attribute(accessorOf(jointName), place + "." + jointName, {4});
         const GltfAttribute weights = document_.attribute(accessorOf(weightName), place + "." + weightName, {4});
-        if (joints.count != count || weights.count != count)
-            document_.fail("joints, weights and positions differ in count", place);
+        if (joints.count != count || weights.count != count) document_.fail("joints, weights and positions differ in count", place);
         for (std::size_t k = 0; k < count * 4; ++k) {
             const float weight = weights.values[k];
             const bool counts = weight > 0.0f && std::isfinite(weight);
@@ -188,8 +183,8 @@ GltfPoses GltfRig::pose(std::size_t node, const tinygltf::Primitive& primitive, 
             const float joint = joints.values[k];
             if (!(joint >= 0.0f && joint < static_cast<float>(matrices.size()))) {
                 if (!counts) continue;
-                document_.fail("vertex " + std::to_string(k / 4) + " follows joint " +
-                                   std::to_string(static_cast<long long>(joint)) + " of " + std::to_string(matrices.size()),
+                document_.fail("vertex " + std::to_string(k / 4) + " follows joint " + std::to_string(static_cast<long long>(joint)) +
+                                   " of " + std::to_string(matrices.size()),
                                place + "." + jointName, "a skin with all joints that its vertices name");
             }
             const auto j = static_cast<std::uint32_t>(joint);
@@ -218,12 +213,10 @@ GltfPoses GltfRig::pose(std::size_t node, const tinygltf::Primitive& primitive, 
             dropped += heaviest[i].dropped();
         }
     }
-    if (zero != 0)
-        repaired(place + ": " + std::to_string(zero) + " vertices whose joint weights sum to zero follow their first joint");
+    if (zero != 0) repaired(place + ": " + std::to_string(zero) + " vertices whose joint weights sum to zero follow their first joint");
     if (scaled != 0) repaired(place + ": the joint weights of " + std::to_string(scaled) + " vertices were scaled to sum to one");
     if (dropped != 0)
-        document_.warn(place + ": of the joints of " + std::to_string(dropped) +
-                       " vertices the four heaviest move them in animations");
+        document_.warn(place + ": of the joints of " + std::to_string(dropped) + " vertices the four heaviest move them in animations");
     return {std::move(poses), std::move(followed)};
 }
 
@@ -254,8 +247,7 @@ std::optional<Skin> GltfRig::finish(bool withNormals) {
                 node.translation = {number(from.translation[0]), number(from.translation[1]), number(from.translation[2])};
             if (!from.scale.empty()) node.scale = {number(from.scale[0]), number(from.scale[1]), number(from.scale[2])};
             if (!from.rotation.empty()) {
-                const glm::dquat q =
-                    glm::normalize(glm::dquat(from.rotation[3], from.rotation[0], from.rotation[1], from.rotation[2]));
+                const glm::dquat q = glm::normalize(glm::dquat(from.rotation[3], from.rotation[0], from.rotation[1], from.rotation[2]));
                 node.rotation = {number(q.x), number(q.y), number(q.z), number(q.w)};
             }
         }
@@ -277,8 +269,7 @@ std::optional<Skin> GltfRig::finish(bool withNormals) {
     return std::move(skin_);
 }
 
-std::vector<Animation> readAnimations(GltfDocument& document,
-                                      const std::function<std::optional<std::uint32_t>(std::size_t)>& nodeOf) {
+std::vector<Animation> readAnimations(GltfDocument& document, const std::function<std::optional<std::uint32_t>(std::size_t)>& nodeOf) {
     const std::size_t nodes = document.model().nodes.size();
     // Many samplers may name one accessor: what they unfold to stays in proportion to the file.
     const std::size_t most = (std::size_t(1) << 22) + 64 * document.bytes();
@@ -289,8 +280,7 @@ std::vector<Animation> readAnimations(GltfDocument& document,
         const std::string place = at("animations", i);
         const auto list = [&](const char* key) -> const Json& {
             const auto found = from.find(key);
-            if (found == from.end() || !found->is_array())
-                document.fail(std::string("no list of ") + key, place, "a list of objects");
+            if (found == from.end() || !found->is_array()) document.fail(std::string("no list of ") + key, place, "a list of objects");
             return *found;
         };
         const Json &channels = list("channels"), &samplers = list("samplers");
@@ -336,20 +326,17 @@ std::vector<Animation> readAnimations(GltfDocument& document,
             int input = 0, output = 0;
             if (!isInteger(keys, "input", input) || !isInteger(keys, "output", output))
                 document.fail("no input or output", keyPlace, "two accessors");
-            held +=
-                document.accessor(input, keyPlace + ".input").count + 4 * document.accessor(output, keyPlace + ".output").count;
+            held += document.accessor(input, keyPlace + ".input").count + 4 * document.accessor(output, keyPlace + ".output").count;
             if (held > most)
                 document.fail("its animations unfold to more than " + std::to_string(most) + " numbers", keyPlace,
                               "fewer samplers of the same keys", ErrorCode::unsupported);
             channel.times = document.attribute(input, keyPlace + ".input", {1}).values;
-            channel.values =
-                document.attribute(output, keyPlace + ".output", {channel.part == AnimatedPart::rotation ? 4 : 3}).values;
+            channel.values = document.attribute(output, keyPlace + ".output", {channel.part == AnimatedPart::rotation ? 4 : 3}).values;
             const std::size_t each = channel.part == AnimatedPart::rotation ? 4 : 3;
-            const std::size_t needed =
-                channel.times.size() * each * (channel.interpolation == Interpolation::cubicSpline ? 3 : 1);
+            const std::size_t needed = channel.times.size() * each * (channel.interpolation == Interpolation::cubicSpline ? 3 : 1);
             if (channel.values.size() != needed)
-                document.fail(std::to_string(channel.values.size() / each) + " values for " +
-                                  std::to_string(channel.times.size()) + " keys of " + interpolation,
+                document.fail(std::to_string(channel.values.size() / each) + " values for " + std::to_string(channel.times.size()) +
+                                  " keys of " + interpolation,
                               keyPlace, "a value a key, of CUBICSPLINE three");
             for (std::size_t k = 0; k < channel.times.size(); ++k)
                 if (!std::isfinite(channel.times[k]) || (k > 0 && channel.times[k] < channel.times[k - 1]))
@@ -376,9 +363,9 @@ std::vector<Animation> readGltfAnimations(const Source& source, const Skin& skin
         return found == byName.end() ? std::nullopt : std::optional(found->second);
     });
     if (all.empty())
-        document.fail(document.animations().empty() ? "there are no animations"
-                                                    : "no animation moves a node with the name of one of the skin's",
-                      "animations", "a file that was made for the same skeleton");
+        document.fail(
+            document.animations().empty() ? "there are no animations" : "no animation moves a node with the name of one of the skin's",
+            "animations", "a file that was made for the same skeleton");
     return all;
 }
 

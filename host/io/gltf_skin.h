@@ -23,7 +23,7 @@ struct GltfFollowed {
 
 /// How the vertices of a primitive follow joints.
 struct GltfPoses {
-    std::vector<glm::dmat4> poses;  // one a vertex, all its joints blended where nodes put them; empty: the node's own transform
+    std::vector<glm::dmat4> poses;       // one a vertex, all its joints blended where nodes put them; empty: the node's own transform
     std::vector<GltfFollowed> followed;  // one a vertex, or, for a node's own transform, one for all
 };
 
@@ -78,7 +78,6 @@ glm::dmat4 localTransform(const GltfDocument& document, std::size_t node);
 /// The document's animations, of the nodes for which nodeOf (from the document's numbers) gives one; animations that move none of
 /// them are left out. Throws Error for keys that are missing, not whole or in disorder; what is not read is a warning of the
 /// document.
-std::vector<Animation> readAnimations(GltfDocument& document,
-                                      const std::function<std::optional<std::uint32_t>(std::size_t)>& nodeOf);
+std::vector<Animation> readAnimations(GltfDocument& document, const std::function<std::optional<std::uint32_t>(std::size_t)>& nodeOf);
 
 }  // namespace vitrail::io_detail

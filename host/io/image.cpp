@@ -138,11 +138,10 @@ Picture loadPictureFromMemory(std::span<const std::byte> bytes, const std::strin
 void savePicture(const std::filesystem::path& file, const Picture& picture, float exposure, ToneCurve curve) {
     const std::string name = file.string(), format = lowerExtension(file);
     if (format != "exr" && format != "png") {
-        failPicture("pictures are written as .exr or .png, not as " + (format.empty() ? "a file without ending" : "." + format),
-                    name, "the ending .exr or .png", ErrorCode::unsupported);
+        failPicture("pictures are written as .exr or .png, not as " + (format.empty() ? "a file without ending" : "." + format), name,
+                    "the ending .exr or .png", ErrorCode::unsupported);
     }
-    if (picture.width == 0 || picture.height == 0 ||
-        picture.pixels.size() != static_cast<std::size_t>(picture.width) * picture.height) {
+    if (picture.width == 0 || picture.height == 0 || picture.pixels.size() != static_cast<std::size_t>(picture.width) * picture.height) {
         failPicture("a picture of " + std::to_string(picture.width) + " x " + std::to_string(picture.height) + " with " +
                         std::to_string(picture.pixels.size()) + " pixels",
                     name, "a picture that holds something", ErrorCode::badInput);
@@ -150,8 +149,7 @@ void savePicture(const std::filesystem::path& file, const Picture& picture, floa
     if (!(exposure > 0.0f) || !std::isfinite(exposure)) {
         failPicture("exposure " + std::to_string(exposure), name, "a number above 0", ErrorCode::badOption);
     }
-    const bool opaque =
-        std::all_of(picture.pixels.begin(), picture.pixels.end(), [](const Float4& pixel) { return pixel.w >= 1.0f; });
+    const bool opaque = std::all_of(picture.pixels.begin(), picture.pixels.end(), [](const Float4& pixel) { return pixel.w >= 1.0f; });
     const int channels = opaque ? 3 : 4;
     const io_detail::ImageSize size{picture.width, picture.height, static_cast<std::uint32_t>(channels)};
     if (format == "exr") {

@@ -67,8 +67,7 @@ public:
         if (!has(key)) return;
         const Json& value = (*this)[key];
         if (!value.is_number_unsigned() || value.get<std::uint64_t>() < least || value.get<std::uint64_t>() > most) {
-            fail(value.dump() + " is no whole number from " + std::to_string(least) + " to " + std::to_string(most),
-                 placeOf(key));
+            fail(value.dump() + " is no whole number from " + std::to_string(least) + " to " + std::to_string(most), placeOf(key));
         }
         into = value.get<std::uint32_t>();
     }
@@ -78,8 +77,8 @@ public:
         const Json& value = (*this)[key];
         if (!value.is_array() || value.size() != n) fail(std::to_string(n) + " numbers [ ... ] were expected", placeOf(key));
         for (int i = 0; i < n; ++i) {
-            into[i] = static_cast<float>(
-                number(value[static_cast<std::size_t>(i)], placeOf(key) + "[" + std::to_string(i) + "]", least, most));
+            into[i] =
+                static_cast<float>(number(value[static_cast<std::size_t>(i)], placeOf(key) + "[" + std::to_string(i) + "]", least, most));
         }
     }
     void read(const char* key, bool& into) const {
@@ -119,8 +118,7 @@ Mesh withFaceNormals(const Mesh& mesh) {
     flat.materials = mesh.materials;
     flat.repairs = mesh.repairs;
     for (std::size_t t = 0; t + 3 <= mesh.indices.size(); t += 3) {
-        const glm::dvec3 a(mesh.positions[mesh.indices[t]]), b(mesh.positions[mesh.indices[t + 1]]),
-            c(mesh.positions[mesh.indices[t + 2]]);
+        const glm::dvec3 a(mesh.positions[mesh.indices[t]]), b(mesh.positions[mesh.indices[t + 1]]), c(mesh.positions[mesh.indices[t + 2]]);
         const Float3 normal = unitOrZero(glm::cross(b - a, c - a));
         for (std::size_t k = t; k < t + 3; ++k) {
             const std::uint32_t v = mesh.indices[k];
@@ -137,8 +135,7 @@ Mesh withFaceNormals(const Mesh& mesh) {
 class JsonSceneReader {
 public:
     explicit JsonSceneReader(const Source& source)
-        : source_(source),
-          json_(parseJson({reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()}, source.name)) {}
+        : source_(source), json_(parseJson({reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()}, source.name)) {}
 
     Scene read() {
         const Members top(json_, source_.name, "", {"name", "materials", "meshes", "camera", "light", "environment"});
@@ -157,8 +154,7 @@ public:
 private:
     std::filesystem::path beside(const Members& where, const char* key) const {
         const std::string named = where.text(key);
-        if (named.empty() || named.find('\0') != std::string::npos)
-            where.fail("the name of a file was expected", where.placeOf(key));
+        if (named.empty() || named.find('\0') != std::string::npos) where.fail("the name of a file was expected", where.placeOf(key));
         if (source_.folder.empty()) {
             where.fail("the file " + inQuotes(named) + " is needed, and there is no folder to look in", where.placeOf(key),
                        "a scene read from a file");
@@ -168,9 +164,9 @@ private:
 
     void readMaterial(const Json& json, const std::string& place) {
         const Members from(json, source_.name, place,
-                           {"name", "baseColour", "alpha", "alphaMode", "alphaCutoff", "doubleSided", "transmission",
-                            "indexOfRefraction", "roughness", "emission", "thickness", "attenuationDistance", "attenuationColour",
-                            "baseColourTexture", "textureOffset", "textureScale", "textureRotation"});
+                           {"name", "baseColour", "alpha", "alphaMode", "alphaCutoff", "doubleSided", "transmission", "indexOfRefraction",
+                            "roughness", "emission", "thickness", "attenuationDistance", "attenuationColour", "baseColourTexture",
+                            "textureOffset", "textureScale", "textureRotation"});
         Material m;
         m.name = from.text("name");
         if (m.name.empty()) from.fail("a name was expected, by which meshes ask for the material", from.placeOf("name"));
@@ -227,7 +223,8 @@ private:
             if (part.mesh.materials.empty()) part.mesh.materials.assign(part.mesh.triangleCount(), 0);
             for (std::uint32_t& id : part.mesh.materials) {
                 if (id >= materials.size())
-                    from.fail("a triangle has material number " + std::to_string(id) + " of " + std::to_string(materials.size()), from.placeOf("materials"));
+                    from.fail("a triangle has material number " + std::to_string(id) + " of " + std::to_string(materials.size()),
+                              from.placeOf("materials"));
                 id = materials[id];
             }
         } else {
@@ -249,8 +246,7 @@ private:
         const std::filesystem::path file = beside(from, "file");
         std::string ending = file.extension().string();
         for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-        if (ending == ".json")
-            from.fail("a scene within a scene", from.placeOf("file"), "the meshes it names", ErrorCode::unsupported);
+        if (ending == ".json") from.fail("a scene within a scene", from.placeOf("file"), "the meshes it names", ErrorCode::unsupported);
         return loadScene(file);
     }
 
@@ -284,14 +280,12 @@ private:
         } else {
             members.read("scale", scale, -kAny, kAny);
         }
-        if (scale.x == 0 || scale.y == 0 || scale.z == 0)
-            members.fail("a factor of 0 flattens the mesh", members.placeOf("scale"));
+        if (scale.x == 0 || scale.y == 0 || scale.z == 0) members.fail("a factor of 0 flattens the mesh", members.placeOf("scale"));
         members.read("translate", translate, -kAny, kAny);
         glm::dmat3 linear(1.0);
         if (members.has("rotate")) {
             const Members turn(members["rotate"], source_.name, members.placeOf("rotate"), {"axis", "degrees"});
-            if (!turn.has("axis") || !turn.has("degrees"))
-                turn.fail("\"axis\" and \"degrees\" were expected", members.placeOf("rotate"));
+            if (!turn.has("axis") || !turn.has("degrees")) turn.fail("\"axis\" and \"degrees\" were expected", members.placeOf("rotate"));
             Float3 axis(0.0f);
             float degrees = 0.0f;
             turn.read("axis", axis, -kAny, kAny);
@@ -336,10 +330,8 @@ private:
                 Mesh& bare = whole.colours.empty() ? whole : mesh;
                 bare.colours.assign(bare.positions.size(), Float4(1.0f));
             }
-            if (std::max(whole.positions.size() + mesh.positions.size(), whole.triangleCount() + mesh.triangleCount()) >
-                0xffffffffu) {
-                throw Error(ErrorCode::unsupported,
-                            {"scene: more than 2^32 vertices or triangles", source_.name, "", "fewer meshes"});
+            if (std::max(whole.positions.size() + mesh.positions.size(), whole.triangleCount() + mesh.triangleCount()) > 0xffffffffu) {
+                throw Error(ErrorCode::unsupported, {"scene: more than 2^32 vertices or triangles", source_.name, "", "fewer meshes"});
             }
         }
         whole.append(mesh);
@@ -405,8 +397,8 @@ private:
                     entry->second = static_cast<int>(scene_.textures.size()) - 1;
                 } catch (const Error& error) {
                     scene_.warnings.push_back("material \"" + scene_.materials[material].name +
-                                              "\": its picture is missing or broken, the plain base colour holds (" +
-                                              error.text().what + ")");
+                                              "\": its picture is missing or broken, the plain base colour holds (" + error.text().what +
+                                              ")");
                 }
             }
             scene_.materials[material].baseColourTexture = entry->second;

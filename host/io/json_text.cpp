@@ -37,8 +37,7 @@ constexpr std::array<std::uint8_t, 256> base64Values() {
     std::array<std::uint8_t, 256> values{};
     for (auto& value : values) value = 64;
     constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (std::size_t i = 0; i < kLetters.size(); ++i)
-        values[static_cast<std::uint8_t>(kLetters[i])] = static_cast<std::uint8_t>(i);
+    for (std::size_t i = 0; i < kLetters.size(); ++i) values[static_cast<std::uint8_t>(kLetters[i])] = static_cast<std::uint8_t>(i);
     return values;
 }
 

@@ -28,11 +28,11 @@ const Reader& readerOf(std::string format, const std::string& name) {
         if (format == reader.ending) return reader;
         known += std::string(known.empty() ? "." : " .") + reader.ending;
     }
-    throw Error(ErrorCode::unsupported, {.what = format.empty() ? "a file without an ending, which would say what it holds"
-                                                                : "no reader for ." + format + " files",
-                                         .where = name,
-                                         .during = {},
-                                         .remedy = known});
+    throw Error(ErrorCode::unsupported,
+                {.what = format.empty() ? "a file without an ending, which would say what it holds" : "no reader for ." + format + " files",
+                 .where = name,
+                 .during = {},
+                 .remedy = known});
 }
 
 Scene read(const Reader& reader, const Source& source) {

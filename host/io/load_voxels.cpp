@@ -88,8 +88,7 @@ NpyHeader npyHeader(std::string_view text, const std::filesystem::path& file) {
 VoxelBits loadNpy(const std::filesystem::path& file, const Grid& grid) {
     const Bytes bytes = readFile(file);
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    if (!text.starts_with("\x93NUMPY") || text.size() < 12)
-        failVoxels("not a .npy file", file, "an array as numpy.save writes it");
+    if (!text.starts_with("\x93NUMPY") || text.size() < 12) failVoxels("not a .npy file", file, "an array as numpy.save writes it");
     const auto byte = [&](std::size_t i) { return std::size_t(std::to_integer<std::uint8_t>(bytes[i])); };
     const std::size_t start = byte(6) == 1 ? 10 : 12;
     std::size_t length = byte(8) | byte(9) << 8;
@@ -99,8 +98,7 @@ VoxelBits loadNpy(const std::filesystem::path& file, const Grid& grid) {
     if (length > text.size() - start) failVoxels("the header runs past the end", file, kWhole);
     const NpyHeader header = npyHeader(text.substr(start, length), file);
     if (header.shape.size() != 3) {
-        failVoxels("an array of " + std::to_string(header.shape.size()) + " dimensions", file, "three: [z][y][x]",
-                   ErrorCode::badInput);
+        failVoxels("an array of " + std::to_string(header.shape.size()) + " dimensions", file, "three: [z][y][x]", ErrorCode::badInput);
     }
     expectSize(header.shape[2], header.shape[1], header.shape[0], grid, file);
 
@@ -148,8 +146,8 @@ void checkRawHeader(const std::filesystem::path& headerFile, const Grid& grid) {
         !std::all_of(size.begin(), size.end(), [](const auto& v) { return v.is_number_unsigned(); })) {
         failVoxels("\"size\" is not three whole numbers", headerFile, "the header as it was written");
     }
-    expectSize(size[0].template get<std::uint64_t>(), size[1].template get<std::uint64_t>(),
-               size[2].template get<std::uint64_t>(), grid, headerFile);
+    expectSize(size[0].template get<std::uint64_t>(), size[1].template get<std::uint64_t>(), size[2].template get<std::uint64_t>(), grid,
+               headerFile);
     for (const auto& [key, value] :
          {std::pair("order", "x fastest, then y, then z"), std::pair("bitOrder", "least significant bit first")}) {
         if (header.contains(key) && header[key] != value) {
@@ -167,8 +165,8 @@ VoxelBits loadRaw(const std::filesystem::path& file, const Grid& grid) {
     const std::uint64_t count = grid.voxelCount(), asBits = count / 8 + (count % 8 != 0);
     if (bytes.size() != asBits && bytes.size() != count) {
         const Uint3 size = grid.size();
-        failVoxels(std::to_string(bytes.size()) + " bytes; " + sizeText(size.x, size.y, size.z) + " voxels take " +
-                       std::to_string(asBits) + " as bits or " + std::to_string(count) + " as bytes",
+        failVoxels(std::to_string(bytes.size()) + " bytes; " + sizeText(size.x, size.y, size.z) + " voxels take " + std::to_string(asBits) +
+                       " as bits or " + std::to_string(count) + " as bytes",
                    file, "a grid of the file's size, or the whole file", ErrorCode::badInput);
     }
     VoxelBits voxels(grid);
@@ -325,8 +323,7 @@ private:
             for (auto& shift : n.transform.shift) {
                 while (from != last && *from == ' ') ++from;
                 const auto [next, failed] = std::from_chars(from, last, shift);
-                if (failed != std::errc() || shift < -1000000 || shift > 1000000)
-                    fail("a translation of \"" + found->second + "\"", at);
+                if (failed != std::errc() || shift < -1000000 || shift > 1000000) fail("a translation of \"" + found->second + "\"", at);
                 from = next;
             }
         }
@@ -334,8 +331,7 @@ private:
             int code = -1;
             std::from_chars(found->second.data(), found->second.data() + found->second.size(), code);
             const int first = code & 3, second = (code >> 2) & 3;
-            if (code < 0 || code > 127 || first > 2 || second > 2 || first == second)
-                fail("a rotation of \"" + found->second + "\"", at);
+            if (code < 0 || code > 127 || first > 2 || second > 2 || first == second) fail("a rotation of \"" + found->second + "\"", at);
             n.transform.axis = {first, second, 3 - first - second};
             for (std::size_t r = 0; r < 3; ++r) n.transform.sign[r] = (code >> (4 + r)) & 1 ? -1 : 1;
         }
@@ -366,8 +362,7 @@ private:
             fail("the scene graph's node " + std::to_string(id) + " is missing, nested too deep or met twice", 8);
         const VoxTransform here = outer.then(found->second.transform);
         for (std::int64_t model : found->second.models) {
-            if (model < 0 || static_cast<std::size_t>(model) >= models_.size())
-                fail("there is no model " + std::to_string(model), 8);
+            if (model < 0 || static_cast<std::size_t>(model) >= models_.size()) fail("there is no model " + std::to_string(model), 8);
             placed_.emplace_back(static_cast<std::size_t>(model), here);
         }
         for (std::int64_t child : found->second.children) place(child, here, depth + 1);

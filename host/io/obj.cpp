@@ -53,8 +53,8 @@ public:
 
     Scene read();
 
-    bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials, std::map<std::string, int>* ids,
-                    std::string*, std::string*) override;
+    bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials, std::map<std::string, int>* ids, std::string*,
+                    std::string*) override;
 
 private:
     // The line that tinyobjloader has just read, without its key word.
@@ -131,14 +131,13 @@ std::size_t ObjSink::numbers(std::string_view rest, float* values, std::size_t l
     std::string_view word;
     std::size_t count = 0;
     while (count < most && words.wordOnLine(word)) {
-        if (!parseNumber(word, values[count]))
-            failAt(source_, place(), inQuotes(word) + " where a number of a " + what + " was expected");
+        if (!parseNumber(word, values[count])) failAt(source_, place(), inQuotes(word) + " where a number of a " + what + " was expected");
         ++count;
     }
     if (count < least)
-        failAt(source_, place(),
-               "a " + std::string(what) + " of " + std::to_string(count) + " numbers; at least " + std::to_string(least) +
-                   " were expected");
+        failAt(
+            source_, place(),
+            "a " + std::string(what) + " of " + std::to_string(count) + " numbers; at least " + std::to_string(least) + " were expected");
     return count;
 }
 
@@ -171,8 +170,7 @@ std::optional<std::int64_t> ObjSink::index(std::string_view text, std::size_t co
     if (text.empty()) return std::nullopt;
     std::int64_t value = 0;
     if (!parseInteger(text, value))
-        failAt(source_, place(),
-               "a face names the " + std::string(what) + " " + inQuotes(text) + "; a whole number was expected");
+        failAt(source_, place(), "a face names the " + std::string(what) + " " + inQuotes(text) + "; a whole number was expected");
     if (value == 0 || value < -static_cast<std::int64_t>(count) || value > std::numeric_limits<std::uint32_t>::max())
         failAt(source_, place(),
                "a face names " + std::string(what) + " " + std::to_string(value) + "; there are " + std::to_string(count) +
@@ -197,8 +195,7 @@ void ObjSink::face() {
             }
             rest.remove_prefix(slash + 1);
         }
-        if (!rest.empty())
-            failAt(source_, place(), "a face has the corner " + inQuotes(word) + "; vertex/texture/normal was expected");
+        if (!rest.empty()) failAt(source_, place(), "a face has the corner " + inQuotes(word) + "; vertex/texture/normal was expected");
         const std::size_t counts[3] = {soup_.mesh.positions.size(), texcoords_.size(), normals_.size()};
         static constexpr const char* kWhat[3] = {"vertex", "texture coordinate", "normal"};
         std::int64_t found[3];
@@ -302,8 +299,7 @@ void ObjSink::nameLines() {
     };
     name(bad[0].second);
     for (const Corner& c : corners_) {
-        const auto found =
-            std::lower_bound(bad.begin(), bad.end(), c.position, [](const auto& b, std::uint32_t v) { return b.first < v; });
+        const auto found = std::lower_bound(bad.begin(), bad.end(), c.position, [](const auto& b, std::uint32_t v) { return b.first < v; });
         if (found == bad.end() || found->first != c.position) continue;
         name(found->second);
         return;
@@ -339,8 +335,7 @@ void ObjSink::splitVertices() {
         if (!versions.empty()) {
             const std::int64_t t = c.texcoord, n = normals ? c.normal : -1;
             const auto same = [&](const Version& v) { return v.taken && v.texcoord == t && v.normal == n; };
-            while (!same(versions[vertex]) && versions[vertex].taken && versions[vertex].next != kNone)
-                vertex = versions[vertex].next;
+            while (!same(versions[vertex]) && versions[vertex].taken && versions[vertex].next != kNone) vertex = versions[vertex].next;
             if (!same(versions[vertex])) {
                 if (versions[vertex].taken) {
                     if (versions.size() >= kNone)

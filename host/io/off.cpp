@@ -57,8 +57,8 @@ void checkCounts(const Source& source, Place place, const Header& header, std::u
 void checkIndex(const Source& source, Place place, std::uint64_t face, std::int64_t index, std::uint64_t vertexCount) {
     if (index < 0 || static_cast<std::uint64_t>(index) >= vertexCount)
         failAt(source, place,
-               "face " + std::to_string(face) + " names vertex " + std::to_string(index) + "; there are " +
-                   std::to_string(vertexCount) + ", numbered from 0");
+               "face " + std::to_string(face) + " names vertex " + std::to_string(index) + "; there are " + std::to_string(vertexCount) +
+                   ", numbered from 0");
 }
 
 Float4 colourOf(const float* values, std::size_t count, bool whole) {
@@ -82,8 +82,7 @@ Soup readAscii(const Source& source, TextCursor cursor, const Header& header) {
         return value;
     };
     const auto cutOff = [&](const char* what, std::uint64_t i, std::uint64_t count) {
-        failAt(source, place(),
-               "the file ends in " + std::string(what) + " " + std::to_string(i) + " of " + std::to_string(count),
+        failAt(source, place(), "the file ends in " + std::string(what) + " " + std::to_string(i) + " of " + std::to_string(count),
                "fetching the file again: it is cut off");
     };
 
@@ -120,8 +119,7 @@ Soup readAscii(const Source& source, TextCursor cursor, const Header& header) {
     }
     if (!allColoured) {
         mesh.colours.clear();
-        if (header.colours)
-            mesh.repairs.push_back("vertex colours were left out: not every vertex has three or four numbers of colour.");
+        if (header.colours) mesh.repairs.push_back("vertex colours were left out: not every vertex has three or four numbers of colour.");
     }
 
     for (std::uint64_t f = 0; f < header.faces; ++f) {
@@ -133,8 +131,8 @@ Soup readAscii(const Source& source, TextCursor cursor, const Header& header) {
         // A corner takes a digit and a space.
         if (static_cast<std::uint64_t>(count) > (cursor.left() + 1) / 2)
             failAt(source, start,
-                   "face " + std::to_string(f) + " claims " + std::to_string(count) + " corners, with " +
-                       std::to_string(cursor.left()) + " bytes left in the file");
+                   "face " + std::to_string(f) + " claims " + std::to_string(count) + " corners, with " + std::to_string(cursor.left()) +
+                       " bytes left in the file");
         const std::size_t first = soup.corners.size();
         for (std::int64_t c = 0; c < count; ++c) {
             if (!cursor.word(word)) cutOff("face", f, header.faces);
@@ -158,8 +156,7 @@ public:
     T take() {
         static_assert(sizeof(T) == 4);
         if (left() < 4)
-            failAt(source_, {Place::byte, source_.bytes.size()}, "the file ends too early",
-                   "fetching the file again: it is cut off");
+            failAt(source_, {Place::byte, source_.bytes.size()}, "the file ends too early", "fetching the file again: it is cut off");
         std::array<std::byte, 4> raw;
         std::memcpy(raw.data(), source_.bytes.data() + at_, 4);
         if constexpr (std::endian::native == std::endian::little) std::reverse(raw.begin(), raw.end());
@@ -235,8 +232,8 @@ Scene readOff(const Source& source) {
         TextCursor ahead = cursor;
         if (ahead.wordOnLine(word) && word == "BINARY") {
             ahead.skipLine();
-            return sceneOf(finish(
-                readBinary(source, ahead.offset(), {header.texcoords, header.colours, header.normals, true, 0, 0}), source));
+            return sceneOf(
+                finish(readBinary(source, ahead.offset(), {header.texcoords, header.colours, header.normals, true, 0, 0}), source));
         }
         if (!cursor.word(word)) failAt(source, {}, "the file ends before its counts", "fetching the file again: it is cut off");
     } else if (!parseInteger(word, unused)) {  // the format lets the word OFF be left out
@@ -246,9 +243,8 @@ Scene readOff(const Source& source) {
     for (std::uint64_t* count : {&header.vertices, &header.faces}) {
         std::int64_t value = 0;
         if (!parseInteger(word, value) || value < 0)
-            failAt(
-                source, {Place::line, cursor.line()},
-                inQuotes(word) + " where the count of " + (count == &header.vertices ? "vertices" : "faces") + " was expected");
+            failAt(source, {Place::line, cursor.line()},
+                   inQuotes(word) + " where the count of " + (count == &header.vertices ? "vertices" : "faces") + " was expected");
         *count = static_cast<std::uint64_t>(value);
         if (count == &header.vertices && !cursor.word(word)) failAt(source, place, "the file ends before its count of faces");
     }

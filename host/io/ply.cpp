@@ -70,14 +70,13 @@ Header readHeader(const Source& source) {
         failAt(source, {Place::line, line}, what, remedy);
     };
     if (text.empty()) failAt(source, {}, "the file is empty; a PLY header was expected");
-    if (text.substr(0, 3) != "ply" ||
-        (text.size() > 3 && text[3] != '\n' && text[3] != '\r' && text[3] != ' ' && text[3] != '\t'))
+    if (text.substr(0, 3) != "ply" || (text.size() > 3 && text[3] != '\n' && text[3] != '\r' && text[3] != ' ' && text[3] != '\t'))
         fail(1, "no PLY file: its first line is " + inQuotes(text.substr(0, text.find_first_of("\r\n"))) + ", not \"ply\"");
 
     // A header whose lines end with \r alone ends so too: a \n that follows it is data already.
     const std::size_t firstEnd = text.find_first_of("\r\n");
-    const bool bareReturns = firstEnd != std::string_view::npos && text[firstEnd] == '\r' &&
-                             (firstEnd + 1 >= text.size() || text[firstEnd + 1] != '\n');
+    const bool bareReturns =
+        firstEnd != std::string_view::npos && text[firstEnd] == '\r' && (firstEnd + 1 >= text.size() || text[firstEnd + 1] != '\n');
     Header header;
     bool hasFormat = false;
     std::size_t at = 0;
@@ -133,8 +132,7 @@ Header readHeader(const Source& source) {
             if (complete && word == "list") {
                 property.list = true;
                 complete = words.wordOnLine(word);
-                if (complete && !parseType(word, property.countType))
-                    fail(line, "unknown type " + inQuotes(word) + " of a list's count");
+                if (complete && !parseType(word, property.countType)) fail(line, "unknown type " + inQuotes(word) + " of a list's count");
                 if (complete && isFloat(property.countType)) fail(line, "the count of a list has the type " + inQuotes(word));
                 complete = complete && words.wordOnLine(word);
             }
@@ -167,8 +165,8 @@ void checkCounts(const Source& source, const Header& header) {
         const std::uint64_t spare = header.format == Format::ascii ? 1 : 0;  // the last line needs no end
         if (element.count > (left + spare) / least)
             failAt(source, {Place::line, element.line},
-                   std::to_string(element.count) + " " + inQuotes(element.name) + " elements claimed, at least " +
-                       std::to_string(least) + " bytes each, but only " + std::to_string(left) + " bytes follow",
+                   std::to_string(element.count) + " " + inQuotes(element.name) + " elements claimed, at least " + std::to_string(least) +
+                       " bytes each, but only " + std::to_string(left) + " bytes follow",
                    "fetching the file again: it is cut off or its header is wrong");
         left -= std::min(left, element.count * least);
     }
@@ -208,8 +206,7 @@ public:
         // A value takes a character and a space.
         if (count < 0 || static_cast<std::uint64_t>(count) > (cursor_.left() + 1) / 2)
             failAt(source_, place(),
-                   "a list of " + std::to_string(count) + " values, with " + std::to_string(cursor_.left()) +
-                       " bytes left in the file");
+                   "a list of " + std::to_string(count) + " values, with " + std::to_string(cursor_.left()) + " bytes left in the file");
         return static_cast<std::uint64_t>(count);
     }
     void skip(Type) { word(); }
@@ -226,13 +223,11 @@ private:
     }
     [[noreturn]] void notANumber(std::string_view text) {
         failAt(source_, place(),
-               inQuotes(text) + " where a number of " + inQuotes(element_->name) + " " + std::to_string(instance_) +
-                   " was expected");
+               inQuotes(text) + " where a number of " + inQuotes(element_->name) + " " + std::to_string(instance_) + " was expected");
     }
     [[noreturn]] void cutOff() {
         failAt(source_, place(),
-               "the file ends in " + inQuotes(element_->name) + " " + std::to_string(instance_) + " of " +
-                   std::to_string(element_->count),
+               "the file ends in " + inQuotes(element_->name) + " " + std::to_string(instance_) + " of " + std::to_string(element_->count),
                "fetching the file again: it is cut off");
     }
 
@@ -293,9 +288,8 @@ public:
         const std::uint64_t left = source_.bytes.size() - at_;
         if (count < 0 || static_cast<std::uint64_t>(count) > left / kBytes[static_cast<int>(valueType)])
             failAt(source_, place(),
-                   "a list of " + std::to_string(count) + " values in " + inQuotes(element_->name) + " " +
-                       std::to_string(instance_) + " of " + std::to_string(element_->count) + ", with " + std::to_string(left) +
-                       " bytes left in the file",
+                   "a list of " + std::to_string(count) + " values in " + inQuotes(element_->name) + " " + std::to_string(instance_) +
+                       " of " + std::to_string(element_->count) + ", with " + std::to_string(left) + " bytes left in the file",
                    "fetching the file again: it is cut off or damaged");
         return static_cast<std::uint64_t>(count);
     }
@@ -318,14 +312,12 @@ private:
     }
     std::int64_t whole(double value) {
         if (!(value == std::floor(value)) || std::abs(value) > 9e15)
-            failAt(source_, place(),
-                   "an index of " + inQuotes(element_->name) + " " + std::to_string(instance_) + " is no whole number");
+            failAt(source_, place(), "an index of " + inQuotes(element_->name) + " " + std::to_string(instance_) + " is no whole number");
         return static_cast<std::int64_t>(value);
     }
     [[noreturn]] void cutOff() {
         failAt(source_, {Place::byte, source_.bytes.size()},
-               "the file ends in " + inQuotes(element_->name) + " " + std::to_string(instance_) + " of " +
-                   std::to_string(element_->count),
+               "the file ends in " + inQuotes(element_->name) + " " + std::to_string(instance_) + " of " + std::to_string(element_->count),
                "fetching the file again: it is cut off");
     }
 
@@ -386,8 +378,7 @@ void readVertices(Input& input, const Element& element, const Source& source, So
         }
         roles.push_back(role);
     }
-    if (!has[kX] || !has[kY] || !has[kZ])
-        failAt(source, {Place::line, element.line}, "the vertices lack one of the properties x, y, z");
+    if (!has[kX] || !has[kY] || !has[kZ]) failAt(source, {Place::line, element.line}, "the vertices lack one of the properties x, y, z");
     const bool normals = has[kNormalX] && has[kNormalY] && has[kNormalZ], texcoords = has[kS] && has[kT];
     const bool colours = has[kRed] && has[kGreen] && has[kBlue];
 
@@ -414,9 +405,8 @@ void readVertices(Input& input, const Element& element, const Source& source, So
         if (normals) soup.mesh.normals.emplace_back(v[kNormalX], v[kNormalY], v[kNormalZ]);
         if (texcoords) soup.mesh.texcoords.emplace_back(v[kS], 1.0f - v[kT]);
         if (colours)
-            soup.mesh.colours.emplace_back(
-                colourChannel(v[kRed], types[kRed], false), colourChannel(v[kGreen], types[kGreen], false),
-                colourChannel(v[kBlue], types[kBlue], false), colourChannel(v[kAlpha], types[kAlpha], true));
+            soup.mesh.colours.emplace_back(colourChannel(v[kRed], types[kRed], false), colourChannel(v[kGreen], types[kGreen], false),
+                                           colourChannel(v[kBlue], types[kBlue], false), colourChannel(v[kAlpha], types[kAlpha], true));
     }
 }
 
@@ -466,8 +456,8 @@ void readFaces(Input& input, const Element& element, std::uint64_t vertexCount, 
                 }
                 if (index < 0 || static_cast<std::uint64_t>(index) >= vertexCount)
                     failAt(source, input.place(),
-                           inQuotes(element.name) + " " + std::to_string(i) + " names vertex " + std::to_string(index) +
-                               "; there are " + std::to_string(vertexCount) + ", numbered from 0");
+                           inQuotes(element.name) + " " + std::to_string(i) + " names vertex " + std::to_string(index) + "; there are " +
+                               std::to_string(vertexCount) + ", numbered from 0");
                 (strips ? strip : soup.corners).push_back(static_cast<std::uint32_t>(index));
             }
             if (strips)
@@ -502,8 +492,7 @@ Soup readElements(Input input, const Header& header, const Source& source) {
         } else if (!element.properties.empty()) {
             for (std::uint64_t i = 0; i < element.count; ++i) {
                 input.start(element, i);
-                for (const Property& p : element.properties)
-                    input.skip(p.type, p.list ? input.listCount(p.countType, p.type) : 1);
+                for (const Property& p : element.properties) input.skip(p.type, p.list ? input.listCount(p.countType, p.type) : 1);
             }
         }
     }

@@ -104,8 +104,7 @@ private:
     void emit(std::uint32_t corner) { triangles_.insert(triangles_.end(), {previous_[corner], corner, next_[corner]}); }
 
     Cut fan(std::uint32_t first) {
-        for (std::uint32_t c = next_[first]; next_[c] != first; c = next_[c])
-            triangles_.insert(triangles_.end(), {first, c, next_[c]});
+        for (std::uint32_t c = next_[first]; next_[c] != first; c = next_[c]) triangles_.insert(triangles_.end(), {first, c, next_[c]});
         return Cut::forced;
     }
 

@@ -14,9 +14,9 @@ namespace vitrail::io_detail {
 
 struct Source {
     std::span<const std::byte> bytes;
-    std::string name;               // for messages: the file as the user wrote it
-    std::filesystem::path folder;   // where relative references are looked up; empty: nowhere
-    bool meshOnly = false;          // materials and textures are not wanted: none need be looked up or decoded
+    std::string name;              // for messages: the file as the user wrote it
+    std::filesystem::path folder;  // where relative references are looked up; empty: nowhere
+    bool meshOnly = false;         // materials and textures are not wanted: none need be looked up or decoded
 };
 
 Scene readPly(const Source& source);   // ply.cpp

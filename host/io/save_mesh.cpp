@@ -53,11 +53,10 @@ private:
         pending_.clear();
     }
     [[noreturn]] void fail() {
-        throw Error(ErrorCode::badFile,
-                    {.what = "the file cannot be written: " + std::error_code(errno, std::generic_category()).message(),
-                     .where = name_.string(),
-                     .during = {},
-                     .remedy = "another folder, or room on the disk"});
+        throw Error(ErrorCode::badFile, {.what = "the file cannot be written: " + std::error_code(errno, std::generic_category()).message(),
+                                         .where = name_.string(),
+                                         .during = {},
+                                         .remedy = "another folder, or room on the disk"});
     }
 
     std::filesystem::path name_;
@@ -75,8 +74,7 @@ void saveMesh(const std::filesystem::path& file, const MeshView& mesh) {
         out.text("ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(mesh.positions.count) +
                  "\nproperty float x\nproperty float y\nproperty float z\n");
         if (normals) out.text("property float nx\nproperty float ny\nproperty float nz\n");
-        out.text("element face " + std::to_string(mesh.triangleCount()) +
-                 "\nproperty list uchar uint vertex_indices\nend_header\n");
+        out.text("element face " + std::to_string(mesh.triangleCount()) + "\nproperty list uchar uint vertex_indices\nend_header\n");
         for (std::size_t v = 0; v < mesh.positions.count; ++v) {
             out.vector(mesh.positions[v]);
             if (normals) out.vector(mesh.normals[v]);

@@ -58,8 +58,8 @@ private:
 
 void saveNpy(const std::filesystem::path& file, const TurnedVoxels& voxels) {
     const Uint3 size = voxels.size();
-    std::string header = "{'descr': '|u1', 'fortran_order': False, 'shape': (" + std::to_string(size.z) + ", " +
-                         std::to_string(size.y) + ", " + std::to_string(size.x) + "), }";
+    std::string header = "{'descr': '|u1', 'fortran_order': False, 'shape': (" + std::to_string(size.z) + ", " + std::to_string(size.y) +
+                         ", " + std::to_string(size.x) + "), }";
     // Magic, version and length take 10 bytes; data start at a multiple of 64, after a line end.
     header.append(63 - (10 + header.size()) % 64, ' ');
     header.push_back('\n');
@@ -147,8 +147,7 @@ public:
         return *this;
     }
     VoxChunk& i32(std::int64_t v) {
-        for (int shift = 0; shift < 32; shift += 8)
-            content_.push_back(static_cast<char>((static_cast<std::uint32_t>(v) >> shift) & 0xff));
+        for (int shift = 0; shift < 32; shift += 8) content_.push_back(static_cast<char>((static_cast<std::uint32_t>(v) >> shift) & 0xff));
         return *this;
     }
     VoxChunk& text(const std::string& v) {
@@ -226,8 +225,8 @@ void voxSceneGraph(std::string& children, const std::vector<VoxModel>& models, U
 void saveVox(const std::filesystem::path& file, const TurnedVoxels& voxels) {
     const Uint3 size = voxels.size();
     if (std::max({size.x, size.y, size.z}) > kWorldSide) {
-        failVoxels("a grid of " + sizeText(size.x, size.y, size.z) + "; MagicaVoxel's world ends at " +
-                       std::to_string(kWorldSide) + " voxels along an axis",
+        failVoxels("a grid of " + sizeText(size.x, size.y, size.z) + "; MagicaVoxel's world ends at " + std::to_string(kWorldSide) +
+                       " voxels along an axis",
                    file, std::to_string(kWorldSide) + " voxels along the longest axis or fewer, or .vdb", ErrorCode::unsupported);
     }
     std::vector<std::string> contents;
@@ -363,9 +362,8 @@ void saveVoxels(const std::filesystem::path& file, const VoxelBits& voxels, cons
     const std::string ending = io_detail::lowerEnding(file);
     const io_detail::TurnedVoxels turned(voxels, options);
     if (voxels.words.size() != voxels.grid.wordCount()) {
-        io_detail::failVoxels(
-            std::to_string(voxels.words.size()) + " words for a grid of " + std::to_string(voxels.grid.wordCount()), file,
-            "VoxelBits as made from the grid", ErrorCode::badInput);
+        io_detail::failVoxels(std::to_string(voxels.words.size()) + " words for a grid of " + std::to_string(voxels.grid.wordCount()), file,
+                              "VoxelBits as made from the grid", ErrorCode::badInput);
     }
     if (ending == ".npy") {
         io_detail::saveNpy(file, turned);
@@ -379,8 +377,8 @@ void saveVoxels(const std::filesystem::path& file, const VoxelBits& voxels, cons
 #ifdef VITRAIL_HAS_VDB
         saveVdb(file, voxels, options);
 #else
-        io_detail::failVoxels("this build has no component vdb", file,
-                              "a build with VITRAIL_BUILD_VDB, or .npy, .raw, .vox, .ply", ErrorCode::unsupported);
+        io_detail::failVoxels("this build has no component vdb", file, "a build with VITRAIL_BUILD_VDB, or .npy, .raw, .vox, .ply",
+                              ErrorCode::unsupported);
 #endif
     } else {
         io_detail::failVoxels("voxels are not written as " + (ending.empty() ? "a file without ending" : ending), file,
@@ -391,9 +389,9 @@ void saveVoxels(const std::filesystem::path& file, const VoxelBits& voxels, cons
 void saveVoxels(const std::filesystem::path& file, const Voxels& voxels, const SaveOptions& options) {
 #ifdef VITRAIL_HAS_VDB
     if (io_detail::lowerEnding(file) == ".vdb" && voxels.bricks()) {
-        saveVdbCells(file, voxels.grid(), [&](const std::function<void(Uint3)>& mark) {
-            voxels.forEach([&](Uint3 cell, std::uint64_t) { mark(cell); });
-        }, options);
+        saveVdbCells(
+            file, voxels.grid(),
+            [&](const std::function<void(Uint3)>& mark) { voxels.forEach([&](Uint3 cell, std::uint64_t) { mark(cell); }); }, options);
         return;
     }
 #endif

@@ -71,8 +71,7 @@ Mesh finish(Soup&& soup, const Source& source) {
     Mesh& mesh = soup.mesh;
     if (soup.tooSmall != 0)
         mesh.repairs.push_back(std::to_string(soup.tooSmall) + " of " + std::to_string(soup.polygonsSeen) +
-                               " faces have fewer than three corners and were left out, the first" +
-                               placeName(soup.firstTooSmall) + ".");
+                               " faces have fewer than three corners and were left out, the first" + placeName(soup.firstTooSmall) + ".");
     if (soup.sizes.empty()) {
         std::string what = "no triangles: " + std::to_string(mesh.positions.size()) + " vertices and no face";
         if (soup.tooSmall != 0) what += " of three corners or more";
@@ -88,13 +87,12 @@ Mesh finish(Soup&& soup, const Source& source) {
             if (found == dropped.end() || *found != corner) continue;
             const Float3 p = mesh.positions[corner];
             failAt(source, soup.notFinite[static_cast<std::size_t>(found - dropped.begin())].second,
-                   "vertex " + std::to_string(corner) + " is not finite (" + std::to_string(p.x) + ", " + std::to_string(p.y) +
-                       ", " + std::to_string(p.z) + ") and a face uses it",
+                   "vertex " + std::to_string(corner) + " is not finite (" + std::to_string(p.x) + ", " + std::to_string(p.y) + ", " +
+                       std::to_string(p.z) + ") and a face uses it",
                    "exporting the mesh again, or removing that vertex with its faces");
         }
         removeVertices(soup, dropped);
-        mesh.repairs.push_back(std::to_string(dropped.size()) +
-                               " vertices are not finite and were left out; no face uses them, the first" +
+        mesh.repairs.push_back(std::to_string(dropped.size()) + " vertices are not finite and were left out; no face uses them, the first" +
                                placeName(soup.notFinite[0].second) + ".");
     }
     dropUnlessFinite(mesh.normals, "normals", mesh.repairs);

@@ -62,19 +62,18 @@ bool isBinary(const Source& source) {
     if (text.size() >= kHeaderBytes && text.size() == kHeaderBytes + kFacetBytes * claimedFacets(source)) return true;
     std::string_view word;
     if (!TextCursor(text).word(word) || lower(word) != "solid") return true;
-    return std::any_of(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(text.size(), 1024)),
-                       [](char c) {
-                           const auto byte = static_cast<unsigned char>(c);
-                           return byte < 0x20 && !(byte >= '\t' && byte <= '\r');
-                       });
+    return std::any_of(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(text.size(), 1024)), [](char c) {
+        const auto byte = static_cast<unsigned char>(c);
+        return byte < 0x20 && !(byte >= '\t' && byte <= '\r');
+    });
 }
 
 Soup readBinary(const Source& source) {
     const std::size_t size = source.bytes.size();
     if (size < kHeaderBytes)
-        failAt(source, {},
-               "neither ascii STL (no \"solid\" at its start) nor binary STL (" + std::to_string(size) +
-                   " bytes; its header alone takes 84)");
+        failAt(
+            source, {},
+            "neither ascii STL (no \"solid\" at its start) nor binary STL (" + std::to_string(size) + " bytes; its header alone takes 84)");
     const std::uint64_t facets = claimedFacets(source), held = (size - kHeaderBytes) / kFacetBytes;
     if (facets > held)
         failAt(source, {Place::byte, 80},
@@ -107,8 +106,7 @@ Soup readAscii(const Source& source) {
     // The next word must be one of those that may follow; returns it in lower case.
     const auto next = [&](const std::string& expected) {
         if (!cursor.word(word))
-            failAt(source, place(), "the file ends where " + expected + " was expected",
-                   "fetching the file again: it is cut off");
+            failAt(source, place(), "the file ends where " + expected + " was expected", "fetching the file again: it is cut off");
         return lower(word);
     };
     const auto unexpected = [&](const std::string& expected) {
@@ -164,8 +162,7 @@ Soup readAscii(const Source& source) {
         }
     }
     if (inside)
-        soup.mesh.repairs.push_back(
-            "the file ends without \"endsolid\": triangles after that point, if there were any, are missing.");
+        soup.mesh.repairs.push_back("the file ends without \"endsolid\": triangles after that point, if there were any, are missing.");
     return soup;
 }
 

@@ -69,8 +69,6 @@ std::string_view trimmed(std::string_view text);
 /// One channel of an 8-bit (or 16-bit) colour, 0 to 1, from sRGB to linear.
 float linearFromSrgb(float value);
 
-inline std::string_view textOf(const Source& source) {
-    return {reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()};
-}
+inline std::string_view textOf(const Source& source) { return {reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()}; }
 
 }  // namespace vitrail::io_detail

@@ -13,7 +13,8 @@ Image shade(Queue& queue, const Voxels& voxels, const Camera& camera, const Boxe
     if (!grid.isBox()) throw Error(ErrorCode::unsupported, {"voxels are shown on box grids only", "", "", "Grid::fit or Grid::box"});
     const bool difference = effect.colour == BoxColour::difference;
     if (difference && (effect.other == nullptr || !(effect.other->grid == grid)))
-        throw Error(ErrorCode::badOption, {"voxels: a difference needs other voxels on the same grid", "", "", "the truth of the same grid"});
+        throw Error(ErrorCode::badOption,
+                    {"voxels: a difference needs other voxels on the same grid", "", "", "the truth of the same grid"});
     Camera sampled = camera;
     sampled.width *= effect.samples;
     sampled.height *= effect.samples;
@@ -41,15 +42,16 @@ Image shade(Queue& queue, const Voxels& voxels, const Camera& camera, const Boxe
         call.launchRange(detail::Program{"volume", ""}, "voxels_mip", tiles, united, mip);
     }
     Buffer<std::uint32_t> none;
-    const Buffer<std::uint32_t>& channel = effect.colour == BoxColour::count                             ? voxels.countBuffer()
-                                           : effect.colour == BoxColour::normal && has(voxels.channels(), Channel::normal) ? voxels.normalBuffer()
-                                                                                                        : none;
+    const Buffer<std::uint32_t>& channel = effect.colour == BoxColour::count ? voxels.countBuffer()
+                                           : effect.colour == BoxColour::normal && has(voxels.channels(), Channel::normal)
+                                               ? voxels.normalBuffer()
+                                               : none;
     const Uint3 size = grid.size();
     const auto bound = static_cast<std::int32_t>(4 * (size.x + size.y + size.z));
     Buffer<float> seen = workspace.take<float>(4 * samples, "samples of a picture");
-    call.launchRange(detail::Program{"light/boxes", ""}, "boxes_shade", samples, grid.desc(), desc, static_cast<std::uint32_t>(effect.colour),
-                     difference ? united : voxels.bits(), difference ? mip : voxels.mip(), these ? these : voxels.bits(),
-                     difference ? none : voxels.bricks(), others, voxels.rank(), channel, bound, seen);
+    call.launchRange(detail::Program{"light/boxes", ""}, "boxes_shade", samples, grid.desc(), desc,
+                     static_cast<std::uint32_t>(effect.colour), difference ? united : voxels.bits(), difference ? mip : voxels.mip(),
+                     these ? these : voxels.bits(), difference ? none : voxels.bricks(), others, voxels.rank(), channel, bound, seen);
     auto image = detail::resolveSamples(call, seen, camera.width, camera.height, effect.samples);
     image->counted.effect = "voxels";
     image->counted.method = voxels.report().method;

@@ -15,13 +15,14 @@ enum Count : std::uint32_t { kPhotons, kLanded, kAbsorbed, kReflected, kMissed, 
 
 void check(const Caustics& effect) {
     const auto refuse = [](const char* option, std::uint32_t value, const char* range) {
-        throw Error(ErrorCode::badOption, {std::string("caustics: ") + option + "=" + std::to_string(value) + " is out of range", "", "", range});
+        throw Error(ErrorCode::badOption,
+                    {std::string("caustics: ") + option + "=" + std::to_string(value) + " is out of range", "", "", range});
     };
     if (effect.photons < 16 || effect.photons > 8192) refuse("photons", effect.photons, "photons from 16 to 8192");
     if (effect.texels < 16 || effect.texels > 4096) refuse("texels", effect.texels, "texels from 16 to 4096");
     if (detail::tracesEnds(effect.method))
-        throw Error(ErrorCode::badOption, {"caustics: " + std::string(detail::nameOf(effect.method)) + " does not march through voxels", "", "",
-                                           "planes, exact or plane"});
+        throw Error(ErrorCode::badOption, {"caustics: " + std::string(detail::nameOf(effect.method)) + " does not march through voxels", "",
+                                           "", "planes, exact or plane"});
     if (!effect.ground.visible) throw Error(ErrorCode::badOption, {"caustics: there is no ground to land on", "", "", "ground.visible"});
 }
 
@@ -47,7 +48,8 @@ CausticMap caustics(Queue& queue, const Scene& scene, const Caustics& effect) {
     const vitrail_LightDesc light = detail::describeLight(scene, effect.ground, bounds);
     const Float3 toLight(light.toLight.x, light.toLight.y, light.toLight.z), centre = (bounds.low + bounds.high) * 0.5f;
     if (!(toLight.y > 0.01f))
-        throw Error(ErrorCode::badOption, {"caustics: the light does not come from above", "", "", "a direction to the light with y above 0"});
+        throw Error(ErrorCode::badOption,
+                    {"caustics: the light does not come from above", "", "", "a direction to the light with y above 0"});
 
     CausticMap map;
     map.light = lightCamera(bounds, toLight, effect.photons);

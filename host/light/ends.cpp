@@ -29,9 +29,11 @@ Grid viewGrid(const Mesh& mesh, const vitrail_CameraDesc& camera, float resoluti
             high[k] = std::max(high[k], along);
         }
     const Double3 extent = high - low, middle = (low + high) * 0.5;
-    const double padding = std::max({extent.x, extent.y, extent.z}) * 2 / 10001, longest = std::max({extent.x, extent.y, extent.z}) + padding;
+    const double padding = std::max({extent.x, extent.y, extent.z}) * 2 / 10001,
+                 longest = std::max({extent.x, extent.y, extent.z}) + padding;
     if (!(longest > 0) || !std::isfinite(longest))
-        throw Error(ErrorCode::badInput, {"the mesh has no size to voxelize along the view", "", "", "a mesh of finite vertices that differ"});
+        throw Error(ErrorCode::badInput,
+                    {"the mesh has no size to voxelize along the view", "", "", "a mesh of finite vertices that differ"});
     const double edge = longest / resolution;
     Uint3 size;
     for (int k = 0; k < 3; ++k) size[k] = static_cast<std::uint32_t>(std::ceil((extent[k] + padding) / edge - 1e-9));
@@ -62,7 +64,8 @@ EndVoxels trace(Call& call, const Seen& seen, const GBuffer& gbuffer, const One&
     return {};
 }
 
-EndVoxels trace(Call& call, const Seen& seen, const GBuffer& gbuffer, const Two& method, Buffer<vitrail_RayEnd>& rays, Buffer<float>& from) {
+EndVoxels trace(Call& call, const Seen& seen, const GBuffer& gbuffer, const Two& method, Buffer<vitrail_RayEnd>& rays,
+                Buffer<float>& from) {
     if (method.thickness == Two::Thickness::image) {
         const GBuffer back = rasterize(call.queue(), seen.mesh, seen.camera, Faces::away);
         launchSeen(call, "two_image_ends", seen, gbuffer, rays, from, back.triangle);

@@ -52,19 +52,21 @@ void checkReflections(const Glass& effect, const GlassMethod& method) {
         throw Error(ErrorCode::badOption,
                     {"glass: reflections=" + std::to_string(effect.reflections) + " is out of range", "", "", "reflections from 0 to 8"});
     if (effect.reflections != 0 && detail::tracesEnds(method))
-        throw Error(ErrorCode::badOption, {"glass: " + std::string(detail::nameOf(method)) + " has no reflections at later surfaces", "", "",
-                                           "reflections 0, or planes, exact or plane"});
+        throw Error(ErrorCode::badOption, {"glass: " + std::string(detail::nameOf(method)) + " has no reflections at later surfaces", "",
+                                           "", "reflections 0, or planes, exact or plane"});
 }
 
 detail::MarchLaunch shading(Queue& queue, const Scene& scene, const Glass& effect, const GlassMethod& method) {
     return [&, light = detail::describeLight(scene, effect.ground, scene.mesh.bounds())](
-               detail::Call& call, const detail::MarchVolume& volume, std::uint64_t samples, const Buffer<float>& seen, const Buffer<std::uint32_t>& status) {
+               detail::Call& call, const detail::MarchVolume& volume, std::uint64_t samples, const Buffer<float>& seen,
+               const Buffer<std::uint32_t>& status) {
         const Buffer<float> map = detail::uploadEnvironment(call, scene);
         const Buffer<float> none;
         const CausticMap* caustic = effect.caustics;
         const Buffer<float>& irradiance = caustic != nullptr ? caustic->irradiance : none;
-        const vitrail_float4 place = caustic != nullptr ? vitrail_float4{caustic->low.x, caustic->low.y, caustic->edge, static_cast<float>(caustic->texels)}
-                                                        : vitrail_float4{};
+        const vitrail_float4 place =
+            caustic != nullptr ? vitrail_float4{caustic->low.x, caustic->low.y, caustic->edge, static_cast<float>(caustic->texels)}
+                               : vitrail_float4{};
         if (!detail::tracesEnds(method)) {
             detail::launchMarch(call, "glass", "glass_shade", volume, samples, light, map, irradiance, place,
                                 static_cast<std::int32_t>(effect.reflections), status, seen);

@@ -26,8 +26,8 @@ namespace {
 MarchVolume voxelized(Queue& queue, const Scene& scene, const GlassMethod& method) {
     checkGlass(scene, method);
     if (tracesEnds(method))
-        throw Error(ErrorCode::badOption, {"glass in voxels: " + std::string(nameOf(method)) + " does not march through what is kept", "", "",
-                                           "planes, exact or plane"});
+        throw Error(ErrorCode::badOption, {"glass in voxels: " + std::string(nameOf(method)) + " does not march through what is kept", "",
+                                           "", "planes, exact or plane"});
     Call call(queue, "voxelizing glass of " + std::to_string(scene.mesh.triangleCount()) + " triangles");
     return marchVoxels(call, scene, method);
 }

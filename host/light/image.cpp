@@ -24,7 +24,8 @@ std::unique_ptr<ImageState> resolveSamples(Call& call, const Buffer<float>& samp
 
 void checkSamples(const char* effect, std::uint32_t samples) {
     if (samples < 1 || samples > 4)
-        throw Error(ErrorCode::badOption, {std::string(effect) + ": samples=" + std::to_string(samples) + " is out of range", "", "", "samples from 1 to 4"});
+        throw Error(ErrorCode::badOption,
+                    {std::string(effect) + ": samples=" + std::to_string(samples) + " is out of range", "", "", "samples from 1 to 4"});
 }
 
 }  // namespace detail

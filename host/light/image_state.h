@@ -18,9 +18,9 @@ struct ImageState {
     Queue queue;
     std::uint32_t width = 0, height = 0;
     Buffer<float> pixels;
-    Buffer<std::uint32_t> status;  // kLightStatusWords, or empty
+    Buffer<std::uint32_t> status;                // kLightStatusWords, or empty
     std::shared_ptr<Record> record, voxelizing;  // the latter null where nothing was voxelized
-    ImageReport counted;           // what was known when the call returned
+    ImageReport counted;                         // what was known when the call returned
 
     std::optional<Picture> picture;
     std::optional<ImageReport> report;

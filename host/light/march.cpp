@@ -55,7 +55,8 @@ vitrail_uint4 packTexture(const Picture& picture, std::vector<std::uint32_t>& te
 std::vector<vitrail_MaterialDesc> describeMaterials(const Scene& scene, std::vector<std::uint32_t>* texels) {
     std::vector<std::pair<vitrail_uint4, Float4>> packed(scene.textures.size(), {vitrail_uint4{}, Float4(1.0f)});
     const auto texture = [&](int index, Float4& mean) {
-        if (!texels || index < 0 || static_cast<std::size_t>(index) >= packed.size() || scene.mesh.texcoords.empty()) return vitrail_uint4{};
+        if (!texels || index < 0 || static_cast<std::size_t>(index) >= packed.size() || scene.mesh.texcoords.empty())
+            return vitrail_uint4{};
         auto& one = packed[static_cast<std::size_t>(index)];
         const Picture& picture = scene.textures[static_cast<std::size_t>(index)];
         if (one.first.y == 0 && !picture.empty()) one.first = packTexture(picture, *texels, one.second);
@@ -88,11 +89,13 @@ std::string_view nameOf(const GlassMethod& method) {
 }
 
 void checkMaterials(const Scene& scene) {
-    if (scene.materials.empty()) throw Error(ErrorCode::badInput, {"the scene has no materials", "", "", "one material, such as defaultGlass(bounds)"});
+    if (scene.materials.empty())
+        throw Error(ErrorCode::badInput, {"the scene has no materials", "", "", "one material, such as defaultGlass(bounds)"});
     for (const std::uint32_t material : scene.mesh.materials)
         if (material >= scene.materials.size())
-            throw Error(ErrorCode::badInput, {"a triangle names material " + std::to_string(material) + " of " + std::to_string(scene.materials.size()), "", "",
-                                              "materials that index the scene's list"});
+            throw Error(ErrorCode::badInput,
+                        {"a triangle names material " + std::to_string(material) + " of " + std::to_string(scene.materials.size()), "", "",
+                         "materials that index the scene's list"});
 }
 
 void checkGlass(const Scene& scene, const GlassMethod& method) {
@@ -118,7 +121,8 @@ vitrail_Media mediaAt(const Scene& scene, const Float3& eye) {
         if (!scene.materials[material].isBody()) continue;
         if (std::max({mesh.index(3 * i), mesh.index(3 * i + 1), mesh.index(3 * i + 2)}) >= mesh.positions.count) continue;
         const Double3 a(mesh.positions[mesh.index(3 * i)]), u = Double3(mesh.positions[mesh.index(3 * i + 1)]) - a,
-                      w = Double3(mesh.positions[mesh.index(3 * i + 2)]) - a, p = glm::cross(d, w), r = o - a, q = glm::cross(r, u);
+                                                            w = Double3(mesh.positions[mesh.index(3 * i + 2)]) - a, p = glm::cross(d, w),
+                                                            r = o - a, q = glm::cross(r, u);
         const double across = glm::dot(u, p), b = glm::dot(r, p) / across, c = glm::dot(d, q) / across, t = glm::dot(w, q) / across;
         if (across != 0 && b >= 0 && c >= 0 && b + c <= 1 && t > 0) met.push_back({t, i, material, across < 0});
     }
@@ -168,15 +172,37 @@ MarchVolume marchVoxels(Call& call, const Scene& scene, const GlassMethod& metho
     if (std::holds_alternative<Exact>(method)) {
         VoxelLists lists = voxelizeLists(queue, mesh, grid);
         lists.voxels.mip();
-        return {grid, std::move(mesh), std::move(lists.voxels), {}, {}, {}, std::move(lists.triangles), std::move(lists.ends), {},
-                std::move(materials), std::move(texels), voxelizing.record(), bound};
+        return {grid,
+                std::move(mesh),
+                std::move(lists.voxels),
+                {},
+                {},
+                {},
+                std::move(lists.triangles),
+                std::move(lists.ends),
+                {},
+                std::move(materials),
+                std::move(texels),
+                voxelizing.record(),
+                bound};
     }
     // Bodies in one another are inside where even-odd has them outside.
     Voxels solid = several(scene.mesh) ? voxelize(queue, mesh, grid, SolidWinding{}) : voxelize(queue, mesh, grid, Solid{});
     SurfaceVoxels surface = voxelizeSurface(queue, mesh, grid, std::holds_alternative<Plane>(method));
     surface.voxels.mip();
-    return {grid, std::move(mesh), std::move(surface.voxels), std::move(surface.surface), std::move(surface.planes), std::move(solid), {}, {}, {},
-            std::move(materials), std::move(texels), voxelizing.record(), bound};
+    return {grid,
+            std::move(mesh),
+            std::move(surface.voxels),
+            std::move(surface.surface),
+            std::move(surface.planes),
+            std::move(solid),
+            {},
+            {},
+            {},
+            std::move(materials),
+            std::move(texels),
+            voxelizing.record(),
+            bound};
 }
 
 MarchVolume marchVolume(Call& call, const Scene& scene, const Camera& camera, const GlassMethod& method) {
@@ -219,13 +245,13 @@ Image picture(Queue& queue, const Scene& scene, const Camera& camera, const Glas
 
 }  // namespace
 
-Image marchPicture(Queue& queue, const Scene& scene, const Camera& camera, const GlassMethod& method, std::uint32_t perSide, const char* name,
-                   const MarchLaunch& launch) {
+Image marchPicture(Queue& queue, const Scene& scene, const Camera& camera, const GlassMethod& method, std::uint32_t perSide,
+                   const char* name, const MarchLaunch& launch) {
     return picture(queue, scene, camera, method, nullptr, perSide, name, launch);
 }
 
-Image marchPicture(Queue& queue, const Scene& scene, const Camera& camera, const GlassMethod& method, MarchVolume& volume, std::uint32_t perSide,
-                   const char* name, const MarchLaunch& launch) {
+Image marchPicture(Queue& queue, const Scene& scene, const Camera& camera, const GlassMethod& method, MarchVolume& volume,
+                   std::uint32_t perSide, const char* name, const MarchLaunch& launch) {
     return picture(queue, scene, camera, method, &volume, perSide, name, launch);
 }
 

@@ -22,14 +22,16 @@ ShadowMethod called(std::string_view name) {
     } else {
         std::string known;
         for (const Method& row : methods())
-            if (row.family == Family::shadow || row.name == Planes::name || row.name == Exact::name) known += (known.empty() ? "" : ", ") + std::string(row.name);
+            if (row.family == Family::shadow || row.name == Planes::name || row.name == Exact::name)
+                known += (known.empty() ? "" : ", ") + std::string(row.name);
         throw Error(ErrorCode::badOption, {"there is no shadow method \"" + std::string(name) + "\"", "", "", "one of " + known});
     }
 }
 
 /// Rays through the scene's own voxels.
 Image byRays(Queue& queue, const Scene& scene, const Camera& camera, const Shadow& effect, const GlassMethod& method) {
-    if (effect.lit) throw Error(ErrorCode::badOption, {"shadow: glass is not matt", "", "", "counted or uniform with lit, or the effect glass"});
+    if (effect.lit)
+        throw Error(ErrorCode::badOption, {"shadow: glass is not matt", "", "", "counted or uniform with lit, or the effect glass"});
     const vitrail_LightDesc light = detail::describeLight(scene, effect.ground, scene.mesh.bounds());
     return detail::marchPicture(queue, scene, camera, method, effect.samples, "shadow",
                                 [&](detail::Call& call, const detail::MarchVolume& volume, std::uint64_t samples, const Buffer<float>& seen,
@@ -58,9 +60,9 @@ Image byMap(Queue& queue, const Scene& scene, const Camera& camera, const Shadow
     const Buffer<vitrail_MaterialDesc> materials = detail::uploadMaterials(call, scene);
     const Buffer<float> map = effect.lit ? detail::uploadEnvironment(call, scene) : Buffer<float>();
     call.launchRange(detail::Program{"light/shadow_map", ""}, "shadow_map_shade", samples, voxels.grid().desc(),
-                     Grid::box(Float3(0.0f), 1.0f, Uint3(1)).desc(), gbuffer.camera, mesh.positions(), mesh.indices(), mesh.normals(), mesh.materials(),
-                     gbuffer.triangle, voxels.bits(), voxels.bricks(), voxels.rank(), shadow.depth, shadow.rate, shadow.columns, materials, light, map,
-                     static_cast<std::uint32_t>(effect.lit), seen);
+                     Grid::box(Float3(0.0f), 1.0f, Uint3(1)).desc(), gbuffer.camera, mesh.positions(), mesh.indices(), mesh.normals(),
+                     mesh.materials(), gbuffer.triangle, voxels.bits(), voxels.bricks(), voxels.rank(), shadow.depth, shadow.rate,
+                     shadow.columns, materials, light, map, static_cast<std::uint32_t>(effect.lit), seen);
     auto image = detail::resolveSamples(call, seen, camera.width, camera.height, effect.samples);
     image->counted.effect = "shadow";
     image->counted.method = Method::name;

@@ -21,7 +21,8 @@ const Program kProgram{"light/shadow_map", ""};
 Grid lightGrid(const Scene& scene, float resolution, float slices) {
     const Bounds bounds = scene.mesh.bounds();
     const Float3 forward = glm::normalize(-scene.light.toLight), up = std::abs(forward.y) < 0.99f ? Float3(0, 1, 0) : Float3(0, 0, 1),
-                 right = glm::normalize(glm::cross(forward, up)), over = glm::cross(right, forward), centre = (bounds.low + bounds.high) * 0.5f;
+                 right = glm::normalize(glm::cross(forward, up)), over = glm::cross(right, forward),
+                 centre = (bounds.low + bounds.high) * 0.5f;
     // Of the box, as long as the light's axes see it; a hundredth more, so that what lies on its faces is in the grid.
     const Float3 half = (bounds.high - bounds.low) * 0.505f + 1e-6f * glm::length(bounds.high - bounds.low);
     const auto along = [&](const Float3& axis) { return glm::dot(glm::abs(axis), half); };
@@ -48,8 +49,8 @@ ShadowMap mapOf(Call& call, const DeviceMesh& mesh, const Grid& grid, const std:
 void addColumns(Call& call, ShadowMap& map) {
     const Grid& grid = map.voxels.grid();
     map.columns = call.queue().workspace().take<float>(4 * std::uint64_t(grid.size().x) * grid.size().y, "transmittances of columns");
-    call.launchRange(kProgram, "shadow_map_columns", columnsOf(grid), grid.desc(), map.voxels.bits(), map.voxels.bricks(), map.voxels.rank(),
-                     map.depth, map.columns);
+    call.launchRange(kProgram, "shadow_map_columns", columnsOf(grid), grid.desc(), map.voxels.bits(), map.voxels.bricks(),
+                     map.voxels.rank(), map.depth, map.columns);
 }
 
 }  // namespace
@@ -81,8 +82,8 @@ ShadowMap shadowMap(Call& call, const Scene& scene, const DeviceMesh& mesh, cons
             map.rate = queue.workspace().take<float>(4 * map.voxels.occupied(), "rates of absorption");
             call.fill(map.rate, 0);
         }
-        call.launchRange(kProgram, "shadow_map_bodies", columnsOf(grid), grid.desc(), map.voxels.bits(), map.voxels.bricks(), map.voxels.rank(),
-                         solid.bits(), solid.bricks(), with(sigma * thickness), map.depth, map.rate);
+        call.launchRange(kProgram, "shadow_map_bodies", columnsOf(grid), grid.desc(), map.voxels.bits(), map.voxels.bricks(),
+                         map.voxels.rank(), solid.bits(), solid.bricks(), with(sigma * thickness), map.depth, map.rate);
     }
     addColumns(call, map);
     return map;

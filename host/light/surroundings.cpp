@@ -41,7 +41,8 @@ vitrail_LightDesc describeLight(const Scene& scene, const Ground& ground, const 
     const float diagonal = glm::length(extent);
     const float length = glm::length(scene.light.toLight);
     if (!(length > 0) || !std::isfinite(length))
-        throw Error(ErrorCode::badOption, {"light: its direction is zero or not finite", "", "", "a direction from the scene to the light"});
+        throw Error(ErrorCode::badOption,
+                    {"light: its direction is zero or not finite", "", "", "a direction from the scene to the light"});
     const Environment& e = scene.environment;
     vitrail_LightDesc out{};
     out.toLight = with(scene.light.toLight / length);
@@ -50,7 +51,8 @@ vitrail_LightDesc describeLight(const Scene& scene, const Ground& ground, const 
     out.zenith = with(e.zenith);
     out.horizon = with(e.horizon);
     out.nadir = with(e.nadir);
-    out.ground = {centre.x, ground.automatic ? bounds.low.y - 1e-3f * diagonal : ground.height, centre.z, ground.visible ? 6.0f * diagonal : 0.0f};
+    out.ground = {centre.x, ground.automatic ? bounds.low.y - 1e-3f * diagonal : ground.height, centre.z,
+                  ground.visible ? 6.0f * diagonal : 0.0f};
     out.groundLight = {0.62f, 0.30f, diagonal / 3.5f, glm::radians(e.yawDegrees)};
     out.mapWidth = e.map.width;
     out.mapHeight = e.map.height;
@@ -95,7 +97,8 @@ DirectionalLight sunOf(const Environment& environment) {
             best = i;
             bestValue = cells[i] / weights[i];
         }
-    const glm::dvec3 peak = direction((static_cast<double>(best % columns) + 0.5) / columns, (static_cast<double>(best / columns) + 0.5) / (2 * rows));
+    const glm::dvec3 peak =
+        direction((static_cast<double>(best % columns) + 0.5) / columns, (static_cast<double>(best / columns) + 0.5) / (2 * rows));
     glm::dvec3 light(0.0), mean(0.0);
     for (std::uint32_t y = 0; y < map.height / 2; ++y)
         for (std::uint32_t x = 0; x < map.width; ++x) {

@@ -45,8 +45,11 @@ RayErrors compareRays(std::span<const vitrail_RayEnd> rays, std::span<const vitr
     bool same = rays.size() == truth.size();
     for (const std::vector<vitrail_RayEnd>& one : shifted) same = same && one.size() == truth.size();
     if (!same)
-        throw Error(ErrorCode::badInput, {.what = "compareRays: " + std::to_string(rays.size()) + " rays, a reference of " + std::to_string(truth.size()),
-                                          .where = {}, .during = {}, .remedy = "one camera for both"});
+        throw Error(ErrorCode::badInput,
+                    {.what = "compareRays: " + std::to_string(rays.size()) + " rays, a reference of " + std::to_string(truth.size()),
+                     .where = {},
+                     .during = {},
+                     .remedy = "one camera for both"});
     if (fault != nullptr) fault->assign(truth.size(), RayFault::outside);
     RayErrors errors;
     std::vector<double> degrees, transmittance;
@@ -75,12 +78,12 @@ RayErrors compareRays(std::span<const vitrail_RayEnd> rays, std::span<const vitr
             stable = stable && one[i].fate == must.fate && cosine(one[i], must) > kCorrectCosine;
         errors.stablePixels += stable;
         stableCorrect += stable && good;
-        const RayFault why = good                                 ? RayFault::none
-                             : ray.fate == VITRAIL_RAY_MISSED     ? RayFault::missed
-                             : !left                              ? RayFault::held
-                             : ray.events < must.events           ? RayFault::tooFew
-                             : ray.events > must.events           ? RayFault::tooMany
-                                                                  : RayFault::drifted;
+        const RayFault why = good                             ? RayFault::none
+                             : ray.fate == VITRAIL_RAY_MISSED ? RayFault::missed
+                             : !left                          ? RayFault::held
+                             : ray.events < must.events       ? RayFault::tooFew
+                             : ray.events > must.events       ? RayFault::tooMany
+                                                              : RayFault::drifted;
         ++errors.faults[static_cast<std::size_t>(why)];
         if (fault != nullptr) (*fault)[i] = why;
     }

@@ -16,8 +16,7 @@ Uint3 cellAt(const Grid& grid, std::uint64_t word, std::uint32_t bit) {
     const std::uint64_t tile = word / VITRAIL_WORDS_PER_TILE, column = tile / d.size.w;
     const auto inTile = static_cast<std::uint32_t>(word % VITRAIL_WORDS_PER_TILE);
     return {static_cast<std::uint32_t>(column % d.tilesX) * 8 + (inTile & 7),
-            static_cast<std::uint32_t>(column / d.tilesX) * 8 + (inTile >> 3),
-            static_cast<std::uint32_t>(tile % d.size.w) * 32 + bit};
+            static_cast<std::uint32_t>(column / d.tilesX) * 8 + (inTile >> 3), static_cast<std::uint32_t>(tile % d.size.w) * 32 + bit};
 }
 
 void name(std::vector<Uint3>& cells, const Grid& grid, std::uint64_t word, std::uint32_t bits) {

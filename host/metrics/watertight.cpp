@@ -17,9 +17,7 @@ struct Words {
 
     explicit Words(const VoxelBits& b)
         : bits(b), sizeX(b.grid.size().x), sizeY(b.grid.size().y), sizeZ(b.grid.size().z), count(b.grid.desc().size.w) {}
-    std::uint32_t at(std::uint32_t x, std::uint32_t y, std::uint32_t w) const {
-        return bits.words[bits.grid.wordIndex(x, y, w * 32)];
-    }
+    std::uint32_t at(std::uint32_t x, std::uint32_t y, std::uint32_t w) const { return bits.words[bits.grid.wordIndex(x, y, w * 32)]; }
     std::uint32_t cells(std::uint32_t w) const { return w + 1 == count && sizeZ % 32 != 0 ? (1u << (sizeZ % 32)) - 1 : ~0u; }
 };
 
@@ -42,8 +40,7 @@ void walkX(Watertight& found, const Words& result, const Words& thin) {
     for (std::uint32_t y = 0; y < thin.sizeY; ++y)
         for (std::uint32_t w = 0; w < thin.count; ++w) {
             walk(found, thin.sizeX, result, thin, [&](const Words& set, std::uint32_t x) { return set.at(x, y, w); });
-            walk(found, thin.sizeX, result, thin,
-                 [&](const Words& set, std::uint32_t x) { return set.at(thin.sizeX - 1 - x, y, w); });
+            walk(found, thin.sizeX, result, thin, [&](const Words& set, std::uint32_t x) { return set.at(thin.sizeX - 1 - x, y, w); });
         }
 }
 
@@ -51,8 +48,7 @@ void walkY(Watertight& found, const Words& result, const Words& thin) {
     for (std::uint32_t x = 0; x < thin.sizeX; ++x)
         for (std::uint32_t w = 0; w < thin.count; ++w) {
             walk(found, thin.sizeY, result, thin, [&](const Words& set, std::uint32_t y) { return set.at(x, y, w); });
-            walk(found, thin.sizeY, result, thin,
-                 [&](const Words& set, std::uint32_t y) { return set.at(x, thin.sizeY - 1 - y, w); });
+            walk(found, thin.sizeY, result, thin, [&](const Words& set, std::uint32_t y) { return set.at(x, thin.sizeY - 1 - y, w); });
         }
 }
 

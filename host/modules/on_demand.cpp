@@ -17,8 +17,7 @@ template <class Module>
 const Module& load(const std::string& name, const std::string& purpose) {
     std::error_code ignored;
     const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", ignored);
-    const std::filesystem::path file =
-        (program.parent_path() / VITRAIL_MODULE_FOLDER / ("libvitrail_" + name + ".so")).lexically_normal();
+    const std::filesystem::path file = (program.parent_path() / VITRAIL_MODULE_FOLDER / ("libvitrail_" + name + ".so")).lexically_normal();
     std::string reason;
     if (void* library = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL); library != nullptr) {
         const auto* module = static_cast<const Module*>(::dlsym(library, ("vitrail_" + name).c_str()));
@@ -50,8 +49,7 @@ void encodeExr(const std::filesystem::path& file, const ImageSize& size, std::sp
     images().exr(file, size, values, name);
 }
 
-void encodePng(const std::filesystem::path& file, const ImageSize& size, std::span<const std::uint8_t> values,
-               const std::string& name) {
+void encodePng(const std::filesystem::path& file, const ImageSize& size, std::span<const std::uint8_t> values, const std::string& name) {
     images().png(file, size, values, name);
 }
 
@@ -69,9 +67,7 @@ const io_detail::VdbModule& vdb() {
 
 inline namespace v0 {
 
-void saveVdb(const std::filesystem::path& file, const VoxelBits& voxels, const SaveOptions& options) {
-    vdb().save(file, voxels, options);
-}
+void saveVdb(const std::filesystem::path& file, const VoxelBits& voxels, const SaveOptions& options) { vdb().save(file, voxels, options); }
 
 void saveVdbCells(const std::filesystem::path& file, const Grid& grid, const VisitCells& visit, const SaveOptions& options) {
     vdb().saveCells(file, grid, visit, options);

@@ -17,7 +17,8 @@ vitrail_CameraDesc describe(const Camera& camera) {
         fail("camera: the picture has no pixels or too many", "1 to 16384 pixels along each side");
     const Float3 toward = camera.target - camera.eye;
     const float distance = glm::length(toward), upLength = glm::length(camera.up);
-    if (!(distance > 0) || !std::isfinite(distance)) fail("camera: eye and target coincide or are not finite", "a target away from the eye");
+    if (!(distance > 0) || !std::isfinite(distance))
+        fail("camera: eye and target coincide or are not finite", "a target away from the eye");
     const Float3 forward = toward / distance;
     const Float3 side = glm::cross(forward, camera.up);
     if (!(glm::length(side) > 1e-6f * upLength)) fail("camera: the view direction is parallel to up", "another up");
@@ -27,10 +28,19 @@ vitrail_CameraDesc describe(const Camera& camera) {
         fail("camera: field of view out of range", "1 to 170 degrees");
     const float halfHeight = flat ? 0.5f * camera.orthographicHeight : std::tan(glm::radians(0.5f * camera.fieldOfViewDegrees));
     const float halfWidth = halfHeight * static_cast<float>(camera.width) / static_cast<float>(camera.height);
-    return {with(camera.eye, flat ? 1.0f : 0.0f), with(right, halfWidth), with(up, halfHeight), with(forward, 0), camera.width, camera.height, 0, 0};
+    return {with(camera.eye, flat ? 1.0f : 0.0f),
+            with(right, halfWidth),
+            with(up, halfHeight),
+            with(forward, 0),
+            camera.width,
+            camera.height,
+            0,
+            0};
 }
 
-GBuffer rasterize(Queue& queue, const DeviceMesh& mesh, const Camera& camera, Faces faces) { return rasterize(queue, mesh, describe(camera), faces); }
+GBuffer rasterize(Queue& queue, const DeviceMesh& mesh, const Camera& camera, Faces faces) {
+    return rasterize(queue, mesh, describe(camera), faces);
+}
 
 GBuffer rasterize(Queue& queue, const DeviceMesh& mesh, const vitrail_CameraDesc& desc, Faces faces) {
     detail::Call call(queue, "rasterizing " + std::to_string(mesh.triangleCount()) + " triangles");

@@ -67,7 +67,8 @@ PhotonSums caustics(const Scene& scene, const Camera& light, double groundHeight
                 const Double3 shading = shadingNormal(mesh, t, o - a, u, w, across, geometric);
                 double facing[3], out[3];
                 vitrail_facing(&d.x, &shading.x, &geometric.x, facing);
-                const double ratio = inside ? material.indexOfRefraction : 1.0 / material.indexOfRefraction, cosine = -vitrail_dot(&d.x, facing);
+                const double ratio = inside ? material.indexOfRefraction : 1.0 / material.indexOfRefraction,
+                             cosine = -vitrail_dot(&d.x, facing);
                 if (vitrail_cross(&d.x, facing, &geometric.x, ratio, out)) keep(Double3(1 - reflectance(cosine, ratio)), row.reflected);
                 d = {out[0], out[1], out[2]};
                 least = past;
@@ -77,7 +78,8 @@ PhotonSums caustics(const Scene& scene, const Camera& light, double groundHeight
                 const double way = d.y != 0 ? (groundHeight - o.y) / d.y : -1;
                 const Double3 p = o + d * way;
                 const double tx = std::floor((p.x - low.x) / edge), tz = std::floor((p.z - low.y) / edge);
-                const bool lands = way > 0 && std::hypot(p.x - centre.x, p.z - centre.z) < radius && tx >= 0 && tz >= 0 && tx < texels && tz < texels;
+                const bool lands =
+                    way > 0 && std::hypot(p.x - centre.x, p.z - centre.z) < radius && tx >= 0 && tz >= 0 && tx < texels && tz < texels;
                 end = lands ? &row.landed : &row.missed;
                 if (lands) landed.emplace_back(std::size_t(tz) * texels + std::size_t(tx), parts);
             }
@@ -85,8 +87,8 @@ PhotonSums caustics(const Scene& scene, const Camera& light, double groundHeight
         }
         const std::scoped_lock lock(joining);
         for (const auto& [texel, parts] : landed) sums.texels[texel] += parts;
-        for (Double3 PhotonSums::*one :
-             {&PhotonSums::emitted, &PhotonSums::landed, &PhotonSums::absorbed, &PhotonSums::reflected, &PhotonSums::missed, &PhotonSums::ended})
+        for (Double3 PhotonSums::*one : {&PhotonSums::emitted, &PhotonSums::landed, &PhotonSums::absorbed, &PhotonSums::reflected,
+                                         &PhotonSums::missed, &PhotonSums::ended})
             sums.*one += row.*one;
     });
     return sums;

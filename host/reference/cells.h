@@ -32,8 +32,7 @@ void inParallel(std::size_t count, std::size_t piece, Work&& work) {
     };
     const std::size_t useful = (count + piece - 1) / piece;
     std::vector<std::thread> threads;
-    for (std::size_t i = 1; i < std::min<std::size_t>(useful, std::thread::hardware_concurrency()); ++i)
-        threads.emplace_back(run);
+    for (std::size_t i = 1; i < std::min<std::size_t>(useful, std::thread::hardware_concurrency()); ++i) threads.emplace_back(run);
     run();
     for (std::thread& thread : threads) thread.join();
     if (failure) std::rethrow_exception(failure);

@@ -74,9 +74,7 @@ bool crosses(double ra, double qa, double rb, double qb) {
     return aBelow ? ra * qb > rb * qa : rb * qa > ra * qb;
 }
 
-double along(const vitrail_float4& axis, const Double3& e) {
-    return (e.x * double(axis.x) + e.y * double(axis.y)) + e.z * double(axis.z);
-}
+double along(const vitrail_float4& axis, const Double3& e) { return (e.x * double(axis.x) + e.y * double(axis.y)) + e.z * double(axis.z); }
 
 Sample sampleOf(const Grid& grid, Float3 pWorld) {
     const vitrail_GridDesc& g = grid.desc();
@@ -84,8 +82,7 @@ Sample sampleOf(const Grid& grid, Float3 pWorld) {
         const Double3 v = grid.toVoxel(pWorld);
         return {v.x, v.y, 1.0, v.z};
     }
-    const Double3 e(double(pWorld.x) - double(g.origin.x), double(pWorld.y) - double(g.origin.y),
-                    double(pWorld.z) - double(g.origin.z));
+    const Double3 e(double(pWorld.x) - double(g.origin.x), double(pWorld.y) - double(g.origin.y), double(pWorld.z) - double(g.origin.z));
     const double w = along(g.axisZ, e), nearDepth = g.extent.z, farDepth = g.extent.w;
     return {along(g.axisX, e), along(g.axisY, e), w, ((w - nearDepth) / (farDepth - nearDepth)) * double(g.size.z)};
 }
@@ -97,8 +94,7 @@ double centreOf(bool perspective, std::int64_t i, std::uint32_t size, double tan
 }
 
 /// The columns (or rows) that can meet the triangle, with what rounding needs; all of them if a corner is not before the eye.
-Range columnsOf(bool perspective, const std::array<double, 3>& x, const std::array<Sample, 3>& v, std::uint32_t size,
-                double tangent) {
+Range columnsOf(bool perspective, const std::array<double, 3>& x, const std::array<Sample, 3>& v, std::uint32_t size, double tangent) {
     std::array<double, 3> u = x;
     if (perspective)
         for (int k = 0; k < 3; ++k) {
@@ -173,8 +169,7 @@ void scanColumns(const MeshView& mesh, const Grid& grid, bool everyDepth, bool s
                     const double cx = centreOf(perspective, i, g.size.x, g.extent.x);
                     std::array<double, 3> r;
                     for (int k = 0; k < 3; ++k) r[k] = perspective ? v[k].x - cx * v[k].w : v[k].x - cx;
-                    if (!(crosses(r[0], q[0], r[1], q[1]) ^ crosses(r[1], q[1], r[2], q[2]) ^ crosses(r[2], q[2], r[0], q[0])))
-                        continue;
+                    if (!(crosses(r[0], q[0], r[1], q[1]) ^ crosses(r[1], q[1], r[2], q[2]) ^ crosses(r[2], q[2], r[0], q[0]))) continue;
                     const double U = r[1] * q[2] - r[2] * q[1], V = r[2] * q[0] - r[0] * q[2], W = r[0] * q[1] - r[1] * q[0];
                     double z = v[0].z + (V * (v[1].z - v[0].z) + W * (v[2].z - v[0].z)) / ((U + V) + W);
                     if (!(z >= lowest)) z = lowest;

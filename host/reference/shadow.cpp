@@ -3,7 +3,6 @@
 #include <cmath>
 #include <vector>
 
-
 #include "reference/camera_rays.h"
 #include "reference/triangles.h"
 

@@ -30,8 +30,9 @@ inline Double3 vertex(const Mesh& mesh, std::uint32_t triangle, int corner) {
 inline void checkMaterials(const Scene& scene) {
     for (const std::uint32_t material : scene.mesh.materials)
         if (material >= scene.materials.size())
-            throw Error(ErrorCode::badInput, {"a triangle names material " + std::to_string(material) + " of " + std::to_string(scene.materials.size()),
-                                              "", "", "materials that index the scene's list"});
+            throw Error(ErrorCode::badInput,
+                        {"a triangle names material " + std::to_string(material) + " of " + std::to_string(scene.materials.size()), "", "",
+                         "materials that index the scene's list"});
 }
 
 /// Interpolated at r from the first corner; u, w: its edges from there, `across` their product, `geometric` that of unit length.

@@ -53,8 +53,7 @@ private:
     /// From the two shortest edges, which lose least to rounding on a sliver; 0 for zero area.
     static Double3 unitNormal(const std::array<Double3, 3>& edges) {
         std::array<int, 3> order{0, 1, 2};
-        std::sort(order.begin(), order.end(),
-                  [&](int a, int b) { return glm::dot(edges[a], edges[a]) < glm::dot(edges[b], edges[b]); });
+        std::sort(order.begin(), order.end(), [&](int a, int b) { return glm::dot(edges[a], edges[a]) < glm::dot(edges[b], edges[b]); });
         const Double3 n = glm::cross(edges[order[0]], edges[order[1]]);
         const double length = std::sqrt(glm::dot(n, n));
         return length > 0 ? n / length : Double3(0);
@@ -110,8 +109,8 @@ void visitCells(const Corners& v, const Directions& d, Uint3 size, Visit&& visit
                             const Double3 centre(double(x) + 0.5, double(y) + 0.5, double(z) + 0.5);
                             const double apart = separation(d, centre, Double3(0.5), kTie);
                             if (apart <= kTie)
-                                visit(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(z),
-                                      centre, apart);
+                                visit(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(z), centre,
+                                      apart);
                         }
             }
 }

@@ -42,8 +42,9 @@ void replaceVectors(Queue& queue, Buffer<float>& buffer, std::span<const Float3>
 DeviceMesh::DeviceMesh(Queue& queue, const MeshView& mesh) {
     check(mesh);
     if (mesh.triangleCount() > 0x55555555u || mesh.positions.count > 0xffffffffu)
-        throw Error(ErrorCode::unsupported, {"a mesh of " + std::to_string(mesh.triangleCount()) + " triangles; indices of corners hold 32 bits", "", "",
-                                             "parts of at most 1431655765 triangles"});
+        throw Error(ErrorCode::unsupported,
+                    {"a mesh of " + std::to_string(mesh.triangleCount()) + " triangles; indices of corners hold 32 bits", "", "",
+                     "parts of at most 1431655765 triangles"});
     detail::Call call(queue, "uploading " + std::to_string(mesh.triangleCount()) + " triangles");
     Workspace& workspace = queue.workspace();
     bounds_ = mesh.bounds();
@@ -70,14 +71,19 @@ DeviceMesh::DeviceMesh(Queue& queue, const MeshView& mesh) {
     }
 }
 
-DeviceMesh::DeviceMesh(Buffer<float> positions, Buffer<std::uint32_t> indices, Buffer<std::uint32_t> materials, Buffer<float> normals, Bounds bounds)
-    : positions_(std::move(positions)), indices_(std::move(indices)), materials_(std::move(materials)), normals_(std::move(normals)),
+DeviceMesh::DeviceMesh(Buffer<float> positions, Buffer<std::uint32_t> indices, Buffer<std::uint32_t> materials, Buffer<float> normals,
+                       Bounds bounds)
+    : positions_(std::move(positions)),
+      indices_(std::move(indices)),
+      materials_(std::move(materials)),
+      normals_(std::move(normals)),
       bounds_(bounds) {
     const std::size_t vertices = positions_.size() / 3, triangles = indices_.size() / 3;
     if (positions_.size() % 3 != 0 || indices_.size() % 3 != 0 || (materials_ && materials_.size() != triangles) ||
         (normals_ && normals_.size() != 3 * vertices))
-        throw Error(ErrorCode::badInput, {"the buffers of a device mesh do not fit each other", "", "",
-                                          "three floats a vertex, three indices a triangle, one material a triangle, three floats a normal"});
+        throw Error(ErrorCode::badInput,
+                    {"the buffers of a device mesh do not fit each other", "", "",
+                     "three floats a vertex, three indices a triangle, one material a triangle, three floats a normal"});
 }
 
 DeviceMesh DeviceMesh::withOwnVertices(Queue& queue) const {
@@ -114,8 +120,9 @@ void DeviceMesh::setNormals(Queue& queue, std::span<const Float3> normals) {
     replaceVectors(queue, normals_, normals, vertexCount(), "normals");
 }
 
-std::uint64_t DeviceMesh::bytes() const { 
-    return positions_.bytes() + indices_.bytes() + materials_.bytes() + normals_.bytes() + texcoords_.bytes() + colours_.bytes() + texture_.bytes();
+std::uint64_t DeviceMesh::bytes() const {
+    return positions_.bytes() + indices_.bytes() + materials_.bytes() + normals_.bytes() + texcoords_.bytes() + colours_.bytes() +
+           texture_.bytes();
 }
 
 }  // namespace v0

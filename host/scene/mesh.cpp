@@ -55,7 +55,8 @@ Bounds MeshView::bounds() const {
 }
 
 MeshView Mesh::view() const {
-    return {.positions = positions, .indices = indices, .materials = materials, .normals = normals, .texcoords = texcoords, .colours = colours};
+    return {
+        .positions = positions, .indices = indices, .materials = materials, .normals = normals, .texcoords = texcoords, .colours = colours};
 }
 
 void Mesh::append(const Mesh& other) {
@@ -113,8 +114,7 @@ void check(const MeshView& mesh) {
         }
         const Float3 p = mesh.positions[vertex];
         if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
-            fail("vertex " + std::to_string(vertex) + " at " + text(p) + " of triangle " + std::to_string(corner / 3) +
-                     " is not finite",
+            fail("vertex " + std::to_string(vertex) + " at " + text(p) + " of triangle " + std::to_string(corner / 3) + " is not finite",
                  "leaving its triangles out");
         }
     }

@@ -79,8 +79,7 @@ constexpr Shape kShapes[] = {
     {"box", "a box", true, kBox, detail::makeBox},
     {"vase", "a vase with a wall, open above", true, kVase, detail::makeVase},
     {"gyroid", "a wall that follows a gyroid", true, kGyroid, detail::makeGyroid},
-    {"tree", "a tree: material 0 bark, as closed branches that run into each other, material 1 leaves", false, kTree,
-     detail::makeTree},
+    {"tree", "a tree: material 0 bark, as closed branches that run into each other, material 1 leaves", false, kTree, detail::makeTree},
     {"hairball", "many thin closed hairs in a ball", true, kHairball, detail::makeHairball},
     {"knot", "a tube in a torus knot about +z", true, kKnot, detail::makeKnot},
     {"terrain", "hills on a solid base", true, kTerrain, detail::makeTerrain},
@@ -129,8 +128,7 @@ Mesh makeShape(std::string_view name, std::span<const std::string> parameters) {
     std::vector<bool> given(values.size(), false);
     for (const std::string& text : parameters) {
         const std::size_t equals = text.find('=');
-        if (equals == std::string::npos)
-            fail(std::string(shape.name) + ": \"" + text + "\" is no parameter", "name=value; " + all);
+        if (equals == std::string::npos) fail(std::string(shape.name) + ": \"" + text + "\" is no parameter", "name=value; " + all);
         std::size_t i = 0;
         while (i < values.size() && shape.parameters[i].name != std::string_view(text).substr(0, equals)) ++i;
         if (i == values.size()) fail(std::string(shape.name) + " has no parameter \"" + text.substr(0, equals) + "\"", all);

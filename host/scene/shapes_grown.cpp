@@ -121,14 +121,13 @@ void marchTetrahedra(Draft& draft, const Function& field, std::uint32_t n, doubl
                         int lone = 0;
                         while (in[lone] != (count == 1 ? 1 : 0)) ++lone;
                         const int* o = kEven[lone];
-                        const std::uint32_t a = vertex(v[o[0]], v[o[1]]), b = vertex(v[o[0]], v[o[2]]),
-                                            c = vertex(v[o[0]], v[o[3]]);
+                        const std::uint32_t a = vertex(v[o[0]], v[o[1]]), b = vertex(v[o[0]], v[o[2]]), c = vertex(v[o[0]], v[o[3]]);
                         count == 1 ? emit(a, b, c) : emit(a, c, b);
                     } else if (count == 2) {
                         const int* o = kEvenPairs[0];
                         while (!in[o[0]] || !in[o[1]]) o += 4;
-                        const std::uint32_t a = vertex(v[o[0]], v[o[2]]), b = vertex(v[o[0]], v[o[3]]),
-                                            c = vertex(v[o[1]], v[o[3]]), d = vertex(v[o[1]], v[o[2]]);
+                        const std::uint32_t a = vertex(v[o[0]], v[o[2]]), b = vertex(v[o[0]], v[o[3]]), c = vertex(v[o[1]], v[o[3]]),
+                                            d = vertex(v[o[1]], v[o[2]]);
                         emit(a, b, c);
                         emit(a, c, d);
                     }
@@ -177,8 +176,7 @@ struct Tree {
             const double angle = turn + i * kPi * (3 - std::sqrt(5.0)), lean = random(0.55, 0.95);
             const Double3 outward = across * std::cos(angle) + third * std::sin(angle);
             const double parentRadius = radii[piece] + (radii[piece + 1] - radii[piece]) * rest;
-            grow(from, along * std::cos(lean) + outward * std::sin(lean), length * random(0.55, 0.75), parentRadius * 0.65,
-                 level + 1);
+            grow(from, along * std::cos(lean) + outward * std::sin(lean), length * random(0.55, 0.75), parentRadius * 0.65, level + 1);
         }
     }
 
@@ -329,9 +327,7 @@ Mesh makeTerrain(Values values) {
     }
     const auto [least, most] = std::minmax_element(heights.begin(), heights.end());
     const double lowest = *least, span = *most - *least;
-    const auto at = [&](std::uint32_t i, std::uint32_t j) {
-        return Double3(double(i) / cells - 0.5, 0, double(j) / cells - 0.5);
-    };
+    const auto at = [&](std::uint32_t i, std::uint32_t j) { return Double3(double(i) / cells - 0.5, 0, double(j) / cells - 0.5); };
     for (std::uint32_t j = 0; j < side; ++j) {
         for (std::uint32_t i = 0; i < side; ++i) {
             draft.add(at(i, j) + Double3(0, kBase + height * (heights[j * side + i] - lowest) / span, 0), Double3(0, 1, 0));

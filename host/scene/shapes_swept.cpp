@@ -115,8 +115,8 @@ Mesh makeKnot(Values values) {
     const double p = values[0], q = values[1], tube = values[2];
     const auto rings = static_cast<std::uint32_t>(values[3]), sides = static_cast<std::uint32_t>(values[4]);
     if (std::gcd(static_cast<int>(p), static_cast<int>(q)) != 1) {
-        throw Error(ErrorCode::badOption, {.what = "shape: a knot of p=" + std::to_string(int(p)) +
-                                                   " and q=" + std::to_string(int(q)) + " would run along itself",
+        throw Error(ErrorCode::badOption, {.what = "shape: a knot of p=" + std::to_string(int(p)) + " and q=" + std::to_string(int(q)) +
+                                                   " would run along itself",
                                            .remedy = "numbers without a common factor"});
     }
     requireRoom("knot", 2.0 * rings * sides);
@@ -127,8 +127,8 @@ Mesh makeKnot(Values values) {
         const double cp = std::cos(p * t), sp = std::sin(p * t), cq = std::cos(q * t), sq = std::sin(q * t);
         const double radius = kLarge + kSmall * cq;
         const Double3 centre(radius * cp, radius * sp, kSmall * sq);
-        const Double3 along = glm::normalize(
-            Double3(-q * kSmall * sq * cp - p * radius * sp, -q * kSmall * sq * sp + p * radius * cp, q * kSmall * cq));
+        const Double3 along =
+            glm::normalize(Double3(-q * kSmall * sq * cp - p * radius * sp, -q * kSmall * sq * sp + p * radius * cp, q * kSmall * cq));
         // The knot lies on a torus, whose normal is at right angles to it and comes back to itself.
         const Double3 across(cq * cp, cq * sp, sq), third = glm::cross(along, across);
         for (std::uint32_t j = 0; j < sides; ++j) {
@@ -153,12 +153,10 @@ Mesh makeHorseshoe(Values values) {
     const auto add = [&](double at, std::uint32_t firstSide, std::uint32_t lastSide) {
         const double onArc = std::clamp(at - cap, 0.0, angle);
         const double latitude = at < cap ? (at - cap) / kRadius : at > cap + angle ? (at - cap - angle) / kRadius : 0.0;
-        const Double3 across(std::cos(start - onArc), std::sin(start - onArc), 0), third(0, 0, 1),
-            along = glm::cross(across, third);
+        const Double3 across(std::cos(start - onArc), std::sin(start - onArc), 0), third(0, 0, 1), along = glm::cross(across, third);
         for (std::uint32_t j = firstSide; j < lastSide; ++j) {
             const double turn = 2 * kPi * j / sides;
-            const Double3 outward =
-                (across * std::cos(turn) + third * std::sin(turn)) * std::cos(latitude) + along * std::sin(latitude);
+            const Double3 outward = (across * std::cos(turn) + third * std::sin(turn)) * std::cos(latitude) + along * std::sin(latitude);
             draft.add(across + outward * kRadius, outward);
         }
     };

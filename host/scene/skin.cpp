@@ -17,8 +17,7 @@ using Matrix = std::array<double, 12>;  // three rows of an affine matrix
 constexpr std::size_t kMostJoints = 65536;  // vertices name them by 16 bits
 
 [[noreturn]] void fail(std::string what, std::string where, std::string remedy) {
-    throw Error(ErrorCode::badInput,
-                {.what = "skin: " + std::move(what), .where = std::move(where), .remedy = std::move(remedy)});
+    throw Error(ErrorCode::badInput, {.what = "skin: " + std::move(what), .where = std::move(where), .remedy = std::move(remedy)});
 }
 
 template <class V>
@@ -66,10 +65,9 @@ void sample(const AnimationChannel& channel, double seconds, double* out) {
     const auto value = [&](std::size_t key, std::size_t which, std::size_t c) {  // which: in-tangent, value, out-tangent
         return static_cast<double>(channel.values[(cubic ? 3 * key + which : key) * width + c]);
     };
-    const auto next =
-        static_cast<std::size_t>(std::upper_bound(channel.times.begin(), channel.times.end(), seconds,
-                                                  [](double t, float key) { return t < static_cast<double>(key); }) -
-                                 channel.times.begin());
+    const auto next = static_cast<std::size_t>(std::upper_bound(channel.times.begin(), channel.times.end(), seconds,
+                                                                [](double t, float key) { return t < static_cast<double>(key); }) -
+                                               channel.times.begin());
     if (next == 0 || next == keys || channel.interpolation == Interpolation::step) {
         for (std::size_t c = 0; c < width; ++c) out[c] = value(next == 0 ? 0 : next - 1, 1, c);
         return;
@@ -105,8 +103,7 @@ void checkFit(const AnimationChannel& channel, const Skin& skin, const std::stri
              "an animation of this skin");
     if (keys == 0) fail("it has no keys", where, "one key at least");
     if (channel.values.size() != expected)
-        fail(std::to_string(channel.values.size()) + " numbers for " + std::to_string(keys) + " keys that need " +
-                 std::to_string(expected),
+        fail(std::to_string(channel.values.size()) + " numbers for " + std::to_string(keys) + " keys that need " + std::to_string(expected),
              where, "3 numbers a key, 4 of a rotation, three times as many of a cubic spline");
 }
 
@@ -128,9 +125,8 @@ double Animation::end() const {
 
 MeshView Skin::bindPose(const MeshView& mesh) const {
     if (mesh.positions.count != positions.size())
-        fail(
-            "it has " + std::to_string(positions.size()) + " vertices where the mesh has " + std::to_string(mesh.positions.count),
-            "", "the skin that was loaded with the mesh");
+        fail("it has " + std::to_string(positions.size()) + " vertices where the mesh has " + std::to_string(mesh.positions.count), "",
+             "the skin that was loaded with the mesh");
     MeshView view = mesh;
     view.positions = positions;
     view.normals = normals;
@@ -184,11 +180,10 @@ void check(const Skin& skin) {
         for (std::size_t k = 0; k < 4; ++k) {
             const float weight = skin.vertexWeights[v][static_cast<int>(k)];
             if (skin.vertexJoints[v][k] >= joints)
-                fail("it follows joint " + std::to_string(skin.vertexJoints[v][k]) + " of " + std::to_string(joints),
-                     at("vertexJoints", v), "a joint of this skin");
+                fail("it follows joint " + std::to_string(skin.vertexJoints[v][k]) + " of " + std::to_string(joints), at("vertexJoints", v),
+                     "a joint of this skin");
             if (!(weight >= 0.0f) || !std::isfinite(weight))
-                fail("weight " + std::to_string(weight) + " is negative or not finite", at("vertexWeights", v),
-                     "weights from 0 to 1");
+                fail("weight " + std::to_string(weight) + " is negative or not finite", at("vertexWeights", v), "weights from 0 to 1");
             sum += static_cast<double>(weight);
         }
         if (!(std::abs(sum - 1) <= 1e-3))
@@ -246,8 +241,7 @@ void Pose::set(const Animation& animation, double seconds) {
 
 void Pose::set(std::span<const Affine> joints) {
     if (joints.size() != joints_.size())
-        fail(std::to_string(joints.size()) + " matrices for " + std::to_string(joints_.size()) + " joints", "pose",
-             "one matrix a joint");
+        fail(std::to_string(joints.size()) + " matrices for " + std::to_string(joints_.size()) + " joints", "pose", "one matrix a joint");
     std::copy(joints.begin(), joints.end(), joints_.begin());
     bound();
 }
@@ -255,8 +249,7 @@ void Pose::set(std::span<const Affine> joints) {
 void Pose::finish() {
     for (std::size_t n = 0; n < world_.size(); ++n) {
         const SkinNode& node = skin_->nodes[n];
-        const Matrix own =
-            node.matrix ? toMatrix(*node.matrix) : composed(locals_[n].translation, locals_[n].rotation, locals_[n].scale);
+        const Matrix own = node.matrix ? toMatrix(*node.matrix) : composed(locals_[n].translation, locals_[n].rotation, locals_[n].scale);
         world_[n] = node.parent < 0 ? own : product(world_[static_cast<std::size_t>(node.parent)], own);
     }
     for (std::size_t j = 0; j < joints_.size(); ++j) {

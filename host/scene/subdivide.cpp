@@ -40,8 +40,8 @@ void split(Mesh& mesh) {
             if (!mesh.normals.empty()) mesh.normals.push_back(midpoint(mesh.normals[a], mesh.normals[b]));
             if (!mesh.texcoords.empty()) mesh.texcoords.push_back(midpoint(mesh.texcoords[a], mesh.texcoords[b]));
         }
-        indices.insert(indices.end(), {v[0], middle[0], middle[2], middle[0], v[1], middle[1], middle[2], middle[1], v[2],
-                                       middle[0], middle[1], middle[2]});
+        indices.insert(indices.end(), {v[0], middle[0], middle[2], middle[0], v[1], middle[1], middle[2], middle[1], v[2], middle[0],
+                                       middle[1], middle[2]});
     }
     mesh.indices = std::move(indices);
     if (!mesh.materials.empty()) {
@@ -63,10 +63,9 @@ Mesh subdivide(const MeshView& mesh, unsigned times) {
         vertices += 3 * after;
         after *= 4;
         if (vertices > std::numeric_limits<std::uint32_t>::max()) {
-            throw Error(ErrorCode::badOption,
-                        {.what = "subdivide: " + std::to_string(triangles) + " triangles, " + std::to_string(times) +
-                                 " times over, may have more vertices than 32-bit indices reach",
-                         .remedy = "at most " + std::to_string(i) + " times"});
+            throw Error(ErrorCode::badOption, {.what = "subdivide: " + std::to_string(triangles) + " triangles, " + std::to_string(times) +
+                                                       " times over, may have more vertices than 32-bit indices reach",
+                                               .remedy = "at most " + std::to_string(i) + " times"});
         }
     }
 

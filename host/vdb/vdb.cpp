@@ -25,8 +25,7 @@ namespace {
 }
 
 void expectBox(const Grid& grid, const std::filesystem::path& file) {
-    if (!grid.isBox())
-        fail("a camera's grid has no place in OpenVDB's world", file, "a box grid, or .npy", ErrorCode::unsupported);
+    if (!grid.isBox()) fail("a camera's grid has no place in OpenVDB's world", file, "a box grid, or .npy", ErrorCode::unsupported);
 }
 
 // The index of a cell in the file, whose axes may be turned.
@@ -60,8 +59,7 @@ using VisitBox = std::function<void(Uint3, Uint3)>;
 
 void place(const openvdb::GridBase& from, const std::filesystem::path& file, const Grid& grid, const VisitBox& visit) {
     const openvdb::math::Transform& transform = from.transform();
-    if (!transform.isLinear())
-        fail("its first grid has no linear transform", file, "a grid of cubic voxels", ErrorCode::badInput);
+    if (!transform.isLinear()) fail("its first grid has no linear transform", file, "a grid of cubic voxels", ErrorCode::badInput);
     // Cell of index (0,0,0), and the steps along the index axes, in voxels of `grid`.
     const auto cellOf = [&](const openvdb::Vec3d& index) {
         const openvdb::Vec3d world = transform.indexToWorld(index);
@@ -97,8 +95,7 @@ void place(const openvdb::GridBase& from, const std::filesystem::path& file, con
             low[a] = box.min()[a] + shift[a];
             high[a] = box.max()[a] + shift[a];
             if (low[a] < 0 || high[a] >= static_cast<std::int64_t>(size[a])) {
-                fail("active voxels lie outside the grid of " + grid.text(), file, "a grid around all of them",
-                     ErrorCode::badInput);
+                fail("active voxels lie outside the grid of " + grid.text(), file, "a grid around all of them", ErrorCode::badInput);
             }
         }
         visit(Uint3(low[0], low[1], low[2]), Uint3(high[0], high[1], high[2]));
@@ -111,13 +108,16 @@ void place(const openvdb::GridBase& from, const std::filesystem::path& file, con
 }  // namespace
 
 void saveVdb(const std::filesystem::path& file, const VoxelBits& voxels, const SaveOptions& options) {
-    saveVdbCells(file, voxels.grid, [&](const std::function<void(Uint3)>& mark) {
-        const Uint3 size = voxels.grid.size();
-        for (std::uint32_t y = 0; y < size.y; ++y)
-            for (std::uint32_t x = 0; x < size.x; ++x)
-                for (std::uint32_t z = 0; z < size.z; ++z)
-                    if (voxels.at(x, y, z)) mark({x, y, z});
-    }, options);
+    saveVdbCells(
+        file, voxels.grid,
+        [&](const std::function<void(Uint3)>& mark) {
+            const Uint3 size = voxels.grid.size();
+            for (std::uint32_t y = 0; y < size.y; ++y)
+                for (std::uint32_t x = 0; x < size.x; ++x)
+                    for (std::uint32_t z = 0; z < size.z; ++z)
+                        if (voxels.at(x, y, z)) mark({x, y, z});
+        },
+        options);
 }
 
 void saveVdbCells(const std::filesystem::path& file, const Grid& grid, const VisitCells& visit, const SaveOptions& options) {

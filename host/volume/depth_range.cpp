@@ -11,9 +11,10 @@ DepthRange::DepthRange(const Grid& grid, Buffer<float> nearest, Buffer<float> fa
     : grid_(grid), nearest_(std::move(nearest)), farthest_(std::move(farthest)), record_(std::move(record)) {
     const std::uint64_t columns = std::uint64_t(grid.size().x) * grid.size().y;
     if (nearest_.size() != columns || farthest_.size() != columns)
-        throw Error(ErrorCode::badOption, {"depth range: maps of " + std::to_string(nearest_.size()) + " and " + std::to_string(farthest_.size()) +
-                                               " entries for a grid of " + std::to_string(columns) + " columns",
-                                           "", "", "an entry a column"});
+        throw Error(ErrorCode::badOption,
+                    {"depth range: maps of " + std::to_string(nearest_.size()) + " and " + std::to_string(farthest_.size()) +
+                         " entries for a grid of " + std::to_string(columns) + " columns",
+                     "", "", "an entry a column"});
 }
 
 CallReport DepthRange::report() const { return record_ ? detail::resolve(*record_) : CallReport(); }

@@ -31,7 +31,8 @@ void makeBricks(Call& call, VoxelsState& state) {
     const std::uint64_t count = exclusiveScan(call, before) + 1;
     state.brickTiles = workspace.take<std::uint32_t>(count, "tiles of bricks");
     call.launchRange(kVolume, "voxels_brick_tiles", groups, state.bricks, before, state.brickTiles);
-    state.bits = workspace.take<std::uint32_t>(count * VITRAIL_WORDS_PER_TILE, std::to_string(count) + " bricks of a grid of " + state.grid.text());
+    state.bits =
+        workspace.take<std::uint32_t>(count * VITRAIL_WORDS_PER_TILE, std::to_string(count) + " bricks of a grid of " + state.grid.text());
     call.fill(state.bits, 0);
 }
 
@@ -45,8 +46,9 @@ void makeRank(VoxelsState& state) {
     call.launchRange(kVolume, "voxels_rank_chunks", chunks, state.bits, rank, sums, groups);
     state.occupied = finishScan(call, rank, sums);
     if (*state.occupied > 0xffffffffull)
-        throw Error(ErrorCode::unsupported, {"a grid of " + state.grid.text() + " has " + std::to_string(*state.occupied) +
-                                                 " occupied voxels; ranks hold 32 bits", "", "", "a coarser grid"});
+        throw Error(ErrorCode::unsupported,
+                    {"a grid of " + state.grid.text() + " has " + std::to_string(*state.occupied) + " occupied voxels; ranks hold 32 bits",
+                     "", "", "a coarser grid"});
     state.rank = std::move(rank);
 }
 
@@ -87,10 +89,8 @@ ChannelSums beginChannels(Call& call, VoxelsState& state) {
 }
 
 void endChannels(Call& call, VoxelsState& state, ChannelSums& sums) {
-    if (has(state.channels, Channel::normal))
-        call.launchRange(kVolume, "voxels_normals", *state.occupied, sums.normalSums, state.normals);
-    if (has(state.channels, Channel::colour))
-        call.launchRange(kVolume, "voxels_colours", *state.occupied, sums.colourSums, state.colours);
+    if (has(state.channels, Channel::normal)) call.launchRange(kVolume, "voxels_normals", *state.occupied, sums.normalSums, state.normals);
+    if (has(state.channels, Channel::colour)) call.launchRange(kVolume, "voxels_colours", *state.occupied, sums.colourSums, state.colours);
     if (has(state.channels, Channel::orientation))
         call.launchRange(kVolume, "voxels_orientations", *state.occupied, sums.orientationSums, state.orientations);
 }
@@ -145,8 +145,9 @@ const VoxelBits& Voxels::host() const {
     if (!state_->host) {
         const std::uint64_t bytes = state_->grid.wordCount() * sizeof(std::uint32_t), limit = state_->queue.memoryLimit();
         if (state_->bricks && bytes > limit)
-            throw Error(ErrorCode::outOfMemory, {"all words of a grid of " + state_->grid.text() + " on the host are " + detail::bytesText(bytes) +
-                                                     "; the memory limit is " + detail::bytesText(limit), "", "", "Voxels::forEach"});
+            throw Error(ErrorCode::outOfMemory, {"all words of a grid of " + state_->grid.text() + " on the host are " +
+                                                     detail::bytesText(bytes) + "; the memory limit is " + detail::bytesText(limit),
+                                                 "", "", "Voxels::forEach"});
         auto host = std::make_unique<VoxelBits>(state_->grid);
         if (state_->bricks) {
             const std::vector<std::uint32_t>&words = hostWords(), &tiles = hostTiles();
@@ -249,7 +250,9 @@ std::uint32_t packNormal(Float3 n) {
         v = (1.0f - std::fabs(u)) * (v < 0.0f ? -1.0f : 1.0f);
         u = foldU;
     }
-    const auto code = [](float t) { return static_cast<std::uint32_t>(static_cast<std::uint16_t>(static_cast<std::int16_t>(std::rint(t * 32767.0f)))); };
+    const auto code = [](float t) {
+        return static_cast<std::uint32_t>(static_cast<std::uint16_t>(static_cast<std::int16_t>(std::rint(t * 32767.0f))));
+    };
     return code(u) | (code(v) << 16);
 }
 

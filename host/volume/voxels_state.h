@@ -14,7 +14,16 @@ inline namespace v0 {
 namespace detail {
 
 /// Counts that a voxelizer's kernels keep, in this order, in a buffer of kStatusWords u32 (kernels/lib/triangle.cl).
-enum Status : std::uint32_t { kStatusTasks, kStatusDegenerate, kStatusSkipped, kStatusOutside, kStatusOpen, kStatusGuessed, kStatusClipped, kStatusWords };
+enum Status : std::uint32_t {
+    kStatusTasks,
+    kStatusDegenerate,
+    kStatusSkipped,
+    kStatusOutside,
+    kStatusOpen,
+    kStatusGuessed,
+    kStatusClipped,
+    kStatusWords
+};
 
 struct VoxelsState {
     Queue queue;

@@ -35,15 +35,17 @@ VoxelLists voxelizeLists(Queue& queue, const DeviceMesh& mesh, const Grid& grid)
                                             }
                                             detail::launchMark(pass, Conservative::name.data(), &to);
                                         }),
-                   {}, {}};
+                   {},
+                   {}};
     const Buffer<std::uint32_t>& counts = out.voxels.countBuffer();
     call.step("lists", 0.5);
     out.ends = workspace.take<std::uint32_t>(out.voxels.occupied(), "list cursors");
     detail::copyBytes(queue, counts.memory(), out.ends.memory(), counts.bytes());
     const std::uint64_t total = detail::exclusiveScan(call, out.ends);
     if (total > 0xffffffffull)
-        throw Error(ErrorCode::unsupported, {"a grid of " + grid.text() + " has " + std::to_string(total) + " fragments; lists hold 32 bits", "", "",
-                                             "a coarser grid"});
+        throw Error(
+            ErrorCode::unsupported,
+            {"a grid of " + grid.text() + " has " + std::to_string(total) + " fragments; lists hold 32 bits", "", "", "a coarser grid"});
     out.triangles = workspace.take<std::uint32_t>(total, "triangle lists");
     const std::vector<std::uint32_t> handedOut = places.read(queue);
     if (handedOut[0] <= handedOut[1]) {

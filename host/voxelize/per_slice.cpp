@@ -41,8 +41,8 @@ void markInside(detail::Pass& pass, const detail::MarkChannels*) {
     detail::withMarkBuffers(pass, nullptr, [&](const auto&... buffers) {
         for (std::uint32_t slice = 0; slice < passes; ++slice) {
             pass.call.step("per_slice: inside", 0.5 * slice / passes);
-            pass.call.launchRange(program, "per_slice_inside", pass.mesh.triangleCount(), desc, slice, slice == 0 ? pass.out.status : uncounted,
-                                  columns, buffers...);
+            pass.call.launchRange(program, "per_slice_inside", pass.mesh.triangleCount(), desc, slice,
+                                  slice == 0 ? pass.out.status : uncounted, columns, buffers...);
         }
     });
     if (pass.out.bits) pass.call.launchRange(program, "per_slice_open", columnWords(grid), columns, pass.out.status);

@@ -93,10 +93,9 @@ Voxels voxelizePatches(Queue& queue, const DeviceMesh& mesh, const Grid& grid, c
                                     const detail::Program curved{"voxelize/curved_points", pass.program.options};
                                     detail::Pass own{pass.call, pass.mesh, curved, pass.out, pass.tasks};
                                     if (!heights)
-                                        method.heights != nullptr ? heights.emplace(pass.call, *method.heights)
-                                                                  : heights.emplace();
-                                    detail::launchMark(own, "curved_points", channels, method.safetyFactor, mesh.normals(),
-                                                       heights->pixels, heights->steepest, heights->width, heights->height);
+                                        method.heights != nullptr ? heights.emplace(pass.call, *method.heights) : heights.emplace();
+                                    detail::launchMark(own, "curved_points", channels, method.safetyFactor, mesh.normals(), heights->pixels,
+                                                       heights->steepest, heights->width, heights->height);
                                 },
                                 {.bytes = heightBytes(method)});
 }
@@ -109,8 +108,8 @@ Voxels voxelize(Queue& queue, const MeshInput& mesh, const Grid& grid, const Poi
                     {"points: heights move PN triangles, and triangles are asked for", "", "", "Surface::pnTriangles"});
     if (method.surface == Points::Surface::pnTriangles) {
         if (grid.desc().kind == VITRAIL_GRID_PERSPECTIVE)
-            throw Error(ErrorCode::unsupported, {"points on PN triangles works on box and orthographic grids; this one is perspective", "", "",
-                                                 "triangles instead, subdivided"});
+            throw Error(ErrorCode::unsupported, {"points on PN triangles works on box and orthographic grids; this one is perspective", "",
+                                                 "", "triangles instead, subdivided"});
         return mesh.device() != nullptr ? voxelizePatches(queue, *mesh.device(), grid, method)
                                         : voxelizePatches(queue, DeviceMesh(queue, mesh.view()), grid, method);
     }
@@ -229,8 +228,8 @@ private:
         double sum = 0;
         for (std::size_t i = 0, end; i < edges.size(); i = end) {
             for (end = i + 1; end < edges.size() && key(edges[end]) == key(edges[i]);) ++end;
-            const double turn = end - i == 2 ? std::acos(std::clamp(glm::dot(edges[i].normal, edges[i + 1].normal), -1.0, 1.0))
-                                             : 3.14159265358979;
+            const double turn =
+                end - i == 2 ? std::acos(std::clamp(glm::dot(edges[i].normal, edges[i + 1].normal), -1.0, 1.0)) : 3.14159265358979;
             sum += edges[i].length * turn;
         }
         return sum;
@@ -255,9 +254,8 @@ float safetyFactorFor(double missing, const MeshView& mesh, const Grid& grid) {
     }
     constexpr auto& kFactors = Missing::kFactors;
     if (!(missing < law.share(0) && missing >= law.share(kFactors.size() - 1))) {
-        std::snprintf(text, sizeof text,
-                      "a share of %g is beyond what safety factors from 1 to 8 leave missing here, %.3g to %.3g", missing,
-                      law.share(kFactors.size() - 1), law.share(0));
+        std::snprintf(text, sizeof text, "a share of %g is beyond what safety factors from 1 to 8 leave missing here, %.3g to %.3g",
+                      missing, law.share(kFactors.size() - 1), law.share(0));
         refuse(text, missing >= law.share(0) ? "points as it is, at safetyFactor 1" : "conservative, which misses nothing");
     }
     std::size_t i = kFactors.size() - 2;

@@ -24,7 +24,8 @@ void checkOption(const Method& row, std::string_view option, double value) {
             throw Error(ErrorCode::badOption, {std::string(row.name) + ": " + optionText(option, value) + " is out of range", "", "",
                                                std::string(option) + " from " + range});
         }
-    throw Error(ErrorCode::badOption, {std::string(row.name) + " has no option \"" + std::string(option) + "\"", "", "", "`vitrail info --methods`"});
+    throw Error(ErrorCode::badOption,
+                {std::string(row.name) + " has no option \"" + std::string(option) + "\"", "", "", "`vitrail info --methods`"});
 }
 
 namespace {
@@ -62,7 +63,8 @@ void failNotWhole(const Method& row, const std::string& text) {
 }
 
 void failUnknownOption(const Method& row, const std::string& text) {
-    throw Error(ErrorCode::badOption, {std::string(row.name) + " has no option \"" + text.substr(0, text.find('=')) + "\"", "", "", optionsOf(row)});
+    throw Error(ErrorCode::badOption,
+                {std::string(row.name) + " has no option \"" + text.substr(0, text.find('=')) + "\"", "", "", optionsOf(row)});
 }
 
 void forTriangles(Pass& pass, const char* step, bool second, const std::function<void(std::uint32_t, std::uint32_t)>& launch) {
@@ -110,7 +112,8 @@ std::uint64_t bytesOf(const MeshInput& mesh, const Grid& grid, Channel channels,
     if (mesh.device() == nullptr)
         bytes += meshBytes(mesh.view(), has(channels, Channel::material) && !mesh.view().materials.empty(), has(channels, Channel::colour));
     // A surface occupies about twice a face of the grid for a compact body; eight faces leave room for most scenes.
-    if (channels != Channel::none) bytes += words / VITRAIL_WORDS_PER_RANK * 4 + channelBytes(channels, std::min(grid.voxelCount(), 8 * face));
+    if (channels != Channel::none)
+        bytes += words / VITRAIL_WORDS_PER_RANK * 4 + channelBytes(channels, std::min(grid.voxelCount(), 8 * face));
     return bytes;
 }
 
@@ -119,7 +122,8 @@ bool inBricks(const Queue& queue, const MeshInput& mesh, const Grid& grid, const
     const std::uint64_t dense = grid.wordCount() * 4;
     if (!scratch.bricks) return false;
     if (queue.storage() != Storage::automatic) return queue.storage() == Storage::bricks;
-    return dense > kDenseMost || dense > queue.deviceInfo().maxBufferBytes || bytesOf(mesh, grid, Channel::none, false) + scratch.bytes > queue.memoryLimit();
+    return dense > kDenseMost || dense > queue.deviceInfo().maxBufferBytes ||
+           bytesOf(mesh, grid, Channel::none, false) + scratch.bytes > queue.memoryLimit();
 }
 
 /// Throws Error (outOfMemory) where the call cannot go on, before anything is taken. Of bricks only the directory is known by then.
@@ -127,7 +131,8 @@ void refuse(const Queue& queue, const MeshInput& mesh, const Grid& grid, const c
     const DeviceInfo device = queue.deviceInfo();
     const std::uint64_t limit = queue.memoryLimit(), most = device.maxBufferBytes, dense = grid.wordCount() * 4;
     const std::uint64_t buffer = bricks ? groupsOfTiles(grid) * 8 : dense;
-    const std::uint64_t need = scratchBytes + bytesOf(mesh, grid, Channel::none, false) - dense + (bricks ? groupsOfTiles(grid) * 12 : dense);
+    const std::uint64_t need =
+        scratchBytes + bytesOf(mesh, grid, Channel::none, false) - dense + (bricks ? groupsOfTiles(grid) * 12 : dense);
     constexpr std::uint64_t kTilesMost = 0x7fffffff;  // kernels count them in 31 bits
     const std::uint64_t tiles = dense / (4 * VITRAIL_WORDS_PER_TILE);
     std::string what;
@@ -136,7 +141,8 @@ void refuse(const Queue& queue, const MeshInput& mesh, const Grid& grid, const c
         what = bytesText(need) + (bricks ? " and memory for bricks" : "") + "; the memory limit is " + bytesText(limit);
         room = double(limit) / double(need);
     } else if (buffer > most) {
-        what = bytesText(buffer) + (bricks ? " for a directory of bricks" : " of bits") + "; this device allows " + bytesText(most) + " in one buffer";
+        what = bytesText(buffer) + (bricks ? " for a directory of bricks" : " of bits") + "; this device allows " + bytesText(most) +
+               " in one buffer";
         room = double(most) / double(buffer);
     } else if (bricks && tiles > kTilesMost) {
         what = std::to_string(tiles) + " tiles; bricks go to " + std::to_string(kTilesMost);
@@ -145,11 +151,12 @@ void refuse(const Queue& queue, const MeshInput& mesh, const Grid& grid, const c
         return;
     }
     const Uint3 size = grid.size();
-    throw Error(ErrorCode::outOfMemory,
-                {std::string(name) + ": a grid of " + grid.text() + " needs " + what, "device: " + device.name + " (" + device.platform + ")",
-                 "voxelizing " + std::to_string(mesh.triangleCount()) + " triangles",
-                 std::to_string(static_cast<std::uint64_t>(std::max({size.x, size.y, size.z}) * std::cbrt(room) * 0.98)) +
-                     " voxels along the longest axis or fewer"});
+    throw Error(
+        ErrorCode::outOfMemory,
+        {std::string(name) + ": a grid of " + grid.text() + " needs " + what, "device: " + device.name + " (" + device.platform + ")",
+         "voxelizing " + std::to_string(mesh.triangleCount()) + " triangles",
+         std::to_string(static_cast<std::uint64_t>(std::max({size.x, size.y, size.z}) * std::cbrt(room) * 0.98)) +
+             " voxels along the longest axis or fewer"});
 }
 
 }  // namespace
@@ -171,13 +178,14 @@ const DeviceMesh& onDevice(Queue& queue, const MeshInput& input, Channel channel
     return uploaded.emplace(queue, view);
 }
 
-Voxels runVoxelizer(Queue& queue, const MeshInput& input, const Grid& grid, Channel channels, const char* name,
-                    const std::string& options, const std::function<void(Pass&, const MarkChannels*)>& mark, const Scratch& scratch) {
-    if (input.triangleCount() == 0) throw Error(ErrorCode::badInput, {std::string(name) + ": the mesh has no triangles", "", "", "a mesh with faces"});
+Voxels runVoxelizer(Queue& queue, const MeshInput& input, const Grid& grid, Channel channels, const char* name, const std::string& options,
+                    const std::function<void(Pass&, const MarkChannels*)>& mark, const Scratch& scratch) {
+    if (input.triangleCount() == 0)
+        throw Error(ErrorCode::badInput, {std::string(name) + ": the mesh has no triangles", "", "", "a mesh with faces"});
     const Method& row = *findMethod(name);
     if (!grid.isBox() && (!row.cameraGrids && grid.desc().kind != VITRAIL_GRID_ORTHOGRAPHIC))
-        throw Error(ErrorCode::unsupported, {std::string(name) + " works on box and orthographic grids; this one is perspective", "", "",
-                                             "sampled or points"});
+        throw Error(ErrorCode::unsupported,
+                    {std::string(name) + " works on box and orthographic grids; this one is perspective", "", "", "sampled or points"});
     const bool bricks = inBricks(queue, input, grid, scratch);
     refuse(queue, input, grid, name, bricks, scratch.bytes);
 
@@ -212,8 +220,11 @@ Voxels runVoxelizer(Queue& queue, const MeshInput& input, const Grid& grid, Chan
     if (channels != Channel::none) {
         makeRank(*out);
         ChannelSums sums = beginChannels(call, *out);
-        const MarkChannels to{.counts = &out->counts, .normalSums = &sums.normalSums, .materials = &out->materials,
-                              .colourSums = &sums.colourSums, .orientationSums = &sums.orientationSums};
+        const MarkChannels to{.counts = &out->counts,
+                              .normalSums = &sums.normalSums,
+                              .materials = &out->materials,
+                              .colourSums = &sums.colourSums,
+                              .orientationSums = &sums.orientationSums};
         mark(pass, &to);
         endChannels(call, *out, sums);
     }

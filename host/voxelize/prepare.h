@@ -53,7 +53,8 @@ void setOptions(M& method, std::span<const std::string> options) {
             known = true;
             const double value = optionValue(*findMethod(M::name), text);
             // Before a switch makes a 1 of everything else.
-            if (std::is_same_v<std::remove_reference_t<decltype(member)>, bool> && value != 0 && value != 1) failSwitch(*findMethod(M::name), text);
+            if (std::is_same_v<std::remove_reference_t<decltype(member)>, bool> && value != 0 && value != 1)
+                failSwitch(*findMethod(M::name), text);
             member = static_cast<std::remove_reference_t<decltype(member)>>(value);
             if (!std::is_floating_point_v<std::remove_reference_t<decltype(member)>> && static_cast<double>(member) != value)
                 failNotWhole(*findMethod(M::name), text);

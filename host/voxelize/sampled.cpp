@@ -35,7 +35,8 @@ std::uint64_t estimate(const MeshInput& mesh, const Grid& grid, const Sampled& m
 
 DepthRange depthRange(Queue& queue, const MeshInput& mesh, const Grid& grid, bool span) {
     const std::uint64_t columns = std::uint64_t(grid.size().x) * grid.size().y;
-    if (mesh.triangleCount() == 0) throw Error(ErrorCode::badInput, {"depth range: the mesh has no triangles", "", "", "a mesh with faces"});
+    if (mesh.triangleCount() == 0)
+        throw Error(ErrorCode::badInput, {"depth range: the mesh has no triangles", "", "", "a mesh with faces"});
     detail::Call call(queue, "the depth range of " + std::to_string(mesh.triangleCount()) + " triangles");
     std::optional<DeviceMesh> uploaded;
     const DeviceMesh& onDevice = detail::onDevice(queue, mesh, Channel::none, uploaded);

@@ -26,8 +26,8 @@ Voxels voxelize(Queue& queue, const MeshInput& mesh, const Grid& grid, const Sol
                                     if (!pass.out.bits)
                                         pass.call.launchRange(pass.program, "solid_bricks", stacks, desc, pass.out.bricks, beyond);
                                     else
-                                        pass.call.launchRange(pass.program, "solid_sweep", stacks * 8, desc, pass.out.bits, pass.out.bricks, beyond,
-                                                              pass.out.status);
+                                        pass.call.launchRange(pass.program, "solid_sweep", stacks * 8, desc, pass.out.bits, pass.out.bricks,
+                                                              beyond, pass.out.status);
                                 });
 }
 

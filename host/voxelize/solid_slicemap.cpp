@@ -14,16 +14,15 @@ void markSlicemaps(detail::Pass& ofVoxelizers) {
     Buffer<std::uint32_t> back = pass.call.queue().workspace().take<std::uint32_t>(pass.out.grid.wordCount(), "back faces");
     pass.call.fill(back, 0);
     detail::launchMark(pass, "solid_slicemap", nullptr, back, detail::mirrored(pass.out.grid));
-    pass.call.launchRange(program, "solid_slicemap_evaluate", std::uint64_t(desc.tilesX) * desc.tilesY * 8, desc, pass.out.bits,
-                          back);
+    pass.call.launchRange(program, "solid_slicemap_evaluate", std::uint64_t(desc.tilesX) * desc.tilesY * 8, desc, pass.out.bits, back);
 }
 
 }  // namespace
 
 Voxels voxelize(Queue& queue, const MeshInput& mesh, const Grid& grid, const SolidSlicemap& method) {
-    return detail::runVoxelizer(
-        queue, mesh, grid, Channel::none, SolidSlicemap::name.data(), detail::checkOptions(method),
-        [](detail::Pass& pass, const detail::MarkChannels*) { markSlicemaps(pass); }, {grid.wordCount() * sizeof(std::uint32_t), false});
+    return detail::runVoxelizer(queue, mesh, grid, Channel::none, SolidSlicemap::name.data(), detail::checkOptions(method),
+                                [](detail::Pass& pass, const detail::MarkChannels*) { markSlicemaps(pass); },
+                                {grid.wordCount() * sizeof(std::uint32_t), false});
 }
 
 std::uint64_t estimate(const MeshInput& mesh, const Grid& grid, const SolidSlicemap&) {

@@ -40,25 +40,23 @@ Boundary boundaryOf(detail::Pass& pass) {
     const DeviceMesh& mesh = pass.mesh;
     const std::uint32_t triangles = mesh.triangleCount();
     if (triangles > kMostTriangles)
-        throw Error(ErrorCode::unsupported,
-                    {"solid_winding takes up to 268435456 triangles; these are " + std::to_string(triangles), "", "",
-                     "solid, if the mesh is closed"});
+        throw Error(ErrorCode::unsupported, {"solid_winding takes up to 268435456 triangles; these are " + std::to_string(triangles), "",
+                                             "", "solid, if the mesh is closed"});
     const auto slots = static_cast<std::uint32_t>(slotsOf(triangles));
     Boundary boundary;
     boundary.parts = workspace.take<std::uint32_t>(triangles, "parts of the mesh");
-    Buffer<std::uint32_t> owner = workspace.take<std::uint32_t>(slots, "edges"),
-                          net = workspace.take<std::uint32_t>(slots, "edges"),
+    Buffer<std::uint32_t> owner = workspace.take<std::uint32_t>(slots, "edges"), net = workspace.take<std::uint32_t>(slots, "edges"),
                           found = workspace.take<std::uint32_t>(1, "open edges");
     call.fill(boundary.parts, 0xff);
     call.fill(owner, 0xff);
     call.fill(net, 0);
     call.fill(found, 0);
-    call.launchRange(pass.program, "solid_winding_edges", triangles, mesh.positions(), mesh.indices(), mesh.vertexCount(), owner,
-                     net, boundary.parts, slots);
+    call.launchRange(pass.program, "solid_winding_edges", triangles, mesh.positions(), mesh.indices(), mesh.vertexCount(), owner, net,
+                     boundary.parts, slots);
     Buffer<std::uint32_t> list;
     const auto collect = [&] {
-        call.launchRange(pass.program, "solid_winding_open", slots, mesh.positions(), mesh.indices(), owner, net, boundary.parts,
-                         found, list, boundary.open);
+        call.launchRange(pass.program, "solid_winding_open", slots, mesh.positions(), mesh.indices(), owner, net, boundary.parts, found,
+                         list, boundary.open);
     };
     collect();
     const std::uint32_t count = found.readOne(call.queue(), 0);
@@ -118,9 +116,9 @@ void markSolid(detail::Pass& pass) {
     mark(true);
     const std::uint64_t total = detail::exclusiveScan(call, ends);
     if (total > 0xffffffffull)
-        throw Error(ErrorCode::unsupported, {"a grid of " + pass.out.grid.text() + " has " + std::to_string(total) +
-                                                 " crossings of columns; lists hold 32 bits",
-                                             "", "", "a coarser grid"});
+        throw Error(ErrorCode::unsupported,
+                    {"a grid of " + pass.out.grid.text() + " has " + std::to_string(total) + " crossings of columns; lists hold 32 bits",
+                     "", "", "a coarser grid"});
     crossings = workspace.take<std::uint32_t>(total, "crossings");
     mark(false);
     call.step("solid_winding: columns", 0.6);
@@ -129,16 +127,16 @@ void markSolid(detail::Pass& pass) {
     call.step("solid_winding: caps", 0.7);
     const std::uint32_t groups = call.taskGroups();
     const Buffer<std::uint32_t> lists = workspace.take<std::uint32_t>(std::uint64_t(3) * groups * capCount, "caps near a block");
-    call.launch(pass.program, "solid_winding_caps", groups, 1, desc, caps->positions(), capCount, ends, crossings, lists,
-                pass.out.bits, pass.out.status, groups);
+    call.launch(pass.program, "solid_winding_caps", groups, 1, desc, caps->positions(), capCount, ends, crossings, lists, pass.out.bits,
+                pass.out.status, groups);
 }
 
 }  // namespace
 
 Voxels voxelize(Queue& queue, const MeshInput& mesh, const Grid& grid, const SolidWinding& method) {
-    return detail::runVoxelizer(
-        queue, mesh, grid, Channel::none, SolidWinding::name.data(), detail::checkOptions(method),
-        [](detail::Pass& pass, const detail::MarkChannels*) { markSolid(pass); }, {scratchBytes(mesh.triangleCount(), grid), false});
+    return detail::runVoxelizer(queue, mesh, grid, Channel::none, SolidWinding::name.data(), detail::checkOptions(method),
+                                [](detail::Pass& pass, const detail::MarkChannels*) { markSolid(pass); },
+                                {scratchBytes(mesh.triangleCount(), grid), false});
 }
 
 std::uint64_t estimate(const MeshInput& mesh, const Grid& grid, const SolidWinding&) {

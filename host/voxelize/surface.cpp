@@ -19,9 +19,9 @@ SurfaceVoxels voxelizeSurface(Queue& queue, const DeviceMesh& mesh, const Grid& 
     Buffer<std::uint32_t> counts = workspace.take<std::uint32_t>(lists.ends.size(), "planes of voxels");
     const detail::Program program{"voxelize/surface", detail::realOptions(queue) + (onePlane ? " -DVITRAIL_ONE_PLANE" : "")};
     const auto gather = [&] {
-        call.launchRange(program, "surface_gather", rank.size(), grid.desc(), mesh.positions(),
-                         mesh.indices(), mesh.vertexCount(), mesh.normals(), out.voxels.bits(), out.voxels.brickTiles(), rank,
-                         out.voxels.countBuffer(), lists.triangles, lists.ends, out.surface, counts, out.planes);
+        call.launchRange(program, "surface_gather", rank.size(), grid.desc(), mesh.positions(), mesh.indices(), mesh.vertexCount(),
+                         mesh.normals(), out.voxels.bits(), out.voxels.brickTiles(), rank, out.voxels.countBuffer(), lists.triangles,
+                         lists.ends, out.surface, counts, out.planes);
     };
     gather();
     const std::uint64_t planes = detail::exclusiveScan(call, counts);

@@ -33,9 +33,8 @@ bool makeNamed(Voxelizer& out, std::string_view name, std::span<const std::strin
 
 Voxelizer voxelizerByName(std::string_view name, std::span<const std::string> options, Channel channels) {
     Voxelizer out;
-    const bool found = [&]<std::size_t... I>(std::index_sequence<I...>) {
-        return (makeNamed<I>(out, name, options, channels) || ...);
-    }(std::make_index_sequence<std::variant_size_v<Voxelizer>>());
+    const bool found = [&]<std::size_t... I>(std::index_sequence<I...>) { return (makeNamed<I>(out, name, options, channels) || ...); }
+    (std::make_index_sequence<std::variant_size_v<Voxelizer>>());
     if (found) return out;
     std::string all;
     for (const Method& method : methods())

@@ -18,11 +18,11 @@
 #include <vitrail/light/glass_voxels.h>
 #include <vitrail/light/shadow.h>
 #include <vitrail/methods.h>
-#include <vitrail/scene/mesh.h>
-#include <vitrail/scene/scene.h>
-#include <vitrail/scene/shapes.h>
 #include <vitrail/metrics/shadow.h>
 #include <vitrail/metrics/voxels.h>
 #include <vitrail/metrics/watertight.h>
+#include <vitrail/scene/mesh.h>
+#include <vitrail/scene/scene.h>
+#include <vitrail/scene/shapes.h>
 #include <vitrail/volume/voxels.h>
 #include <vitrail/voxelize/voxelize.h>

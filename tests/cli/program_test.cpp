@@ -36,8 +36,8 @@ protected:
     /// Runs `vitrail arguments` with the test's folder as the working one.
     Result run(const std::string& arguments, const std::string& before = "") const {
         const fs::path out = folder_ / ".out", err = folder_ / ".err";
-        const std::string command = "cd '" + folder_.string() + "' && " + before + " '" VITRAIL_PROGRAM "' " + arguments + " >'" + out.string() +
-                                    "' 2>'" + err.string() + "'";
+        const std::string command = "cd '" + folder_.string() + "' && " + before + " '" VITRAIL_PROGRAM "' " + arguments + " >'" +
+                                    out.string() + "' 2>'" + err.string() + "'";
         const int status = std::system(command.c_str());
         Result result{WIFEXITED(status) ? WEXITSTATUS(status) : -1, text(out), text(err)};
         fs::remove(out);
@@ -104,14 +104,28 @@ TEST_F(Program, TableOfMethodsNeedsNoDevice) {
 
 TEST_F(Program, BadArgumentsAreTwo) {
     makeMesh();
-    for (const std::string arguments :
-         {"voxelise mesh.ply", "voxelize", "voxelize mesh.ply --padding -1", "voxelize mesh.ply -r 0", "voxelize mesh.ply -r 64 --voxel-size 0.1",
-          "voxelize mesh.ply --bounds 0,0,0,1,1", "voxelize mesh.ply --bounds 1,0,0,0,1,1", "voxelize mesh.ply --up x",
-          "voxelize mesh.ply --channels scent", "voxelize mesh.ply --method points --safetyFactor 1000",
-          "voxelize mesh.ply --method conservative --safetyFactor 2", "compare mesh.ply --methods conservative --safetyFactor 2",
-          "compare mesh.ply --expect missing", "compare mesh.ply --expect missing!=0", "compare mesh.ply --expect missing==few",
-          "compare mesh.ply --expect nothing==0", "compare mesh.ply --expect watertight==1", "shape", "shape torus",
-          "shape teapot -o x.ply", "shape torus tube=9 -o x.ply", "voxelize mesh.ply --channels count -o x.vox"}) {
+    for (const std::string arguments : {"voxelise mesh.ply",
+                                        "voxelize",
+                                        "voxelize mesh.ply --padding -1",
+                                        "voxelize mesh.ply -r 0",
+                                        "voxelize mesh.ply -r 64 --voxel-size 0.1",
+                                        "voxelize mesh.ply --bounds 0,0,0,1,1",
+                                        "voxelize mesh.ply --bounds 1,0,0,0,1,1",
+                                        "voxelize mesh.ply --up x",
+                                        "voxelize mesh.ply --channels scent",
+                                        "voxelize mesh.ply --method points --safetyFactor 1000",
+                                        "voxelize mesh.ply --method conservative --safetyFactor 2",
+                                        "compare mesh.ply --methods conservative --safetyFactor 2",
+                                        "compare mesh.ply --expect missing",
+                                        "compare mesh.ply --expect missing!=0",
+                                        "compare mesh.ply --expect missing==few",
+                                        "compare mesh.ply --expect nothing==0",
+                                        "compare mesh.ply --expect watertight==1",
+                                        "shape",
+                                        "shape torus",
+                                        "shape teapot -o x.ply",
+                                        "shape torus tube=9 -o x.ply",
+                                        "voxelize mesh.ply --channels count -o x.vox"}) {
         const Result result = run(arguments);
         EXPECT_EQ(result.code, 2) << arguments << "\n" << result.err;
         EXPECT_EQ(result.out, "") << arguments;
@@ -135,8 +149,8 @@ TEST_F(Program, UnknownMethodListsWhatThereIs) {
 TEST_F(Program, ErrorsAreOne) {
     makeMesh();
     std::ofstream(folder_ / "broken.ply") << "ply\nformat ascii 1.0\nelement vertex 3\n";
-    for (const std::string arguments : {"voxelize none.ply", "voxelize broken.ply", "info --device none-such",
-                                        "voxelize mesh.ply -r 60000", "compare mesh.ply -r 32 --against mesh.ply"}) {
+    for (const std::string arguments : {"voxelize none.ply", "voxelize broken.ply", "info --device none-such", "voxelize mesh.ply -r 60000",
+                                        "compare mesh.ply -r 32 --against mesh.ply"}) {
         const Result result = run(arguments);
         EXPECT_EQ(result.code, 1) << arguments << "\n" << result.err;
         EXPECT_EQ(result.out, "") << arguments;
@@ -198,7 +212,8 @@ TEST_F(Program, RenderWritesPictures) {
     EXPECT_EQ(rendered["size"], json({40, 30}));
     EXPECT_EQ(files(), (std::set<std::string>{"mesh.ply", "out.png", "out.exr"}));
 
-    for (const std::string arguments : {"--effect none -o a.png", "--effect voxels --size 40 -o a.png", "--method magic -o a.png", "--effect voxels"})
+    for (const std::string arguments :
+         {"--effect none -o a.png", "--effect voxels --size 40 -o a.png", "--method magic -o a.png", "--effect voxels"})
         EXPECT_EQ(run("render mesh.ply " + arguments).code, 2) << arguments;
     EXPECT_EQ(run("render mesh.ply --effect voxels -r 16 --size 40x30 -o none/a.png").code, 1);
     EXPECT_EQ(run("render mesh.ply --effect voxels -r 16 --size 40x30 -o a.bmp").code, 1);
@@ -253,8 +268,8 @@ TEST_F(Program, ErrorsComeOutOfModulesWhole) {
 TEST_F(Program, AModuleThatIsMissingIsAnError) {
     makeMesh();
     fs::create_directory(folder_ / "bin");
-    const Result result = run("render mesh.ply --effect voxels -r 16 --size 40x30 -o out.png",
-                              "sh -c 'cp \"$0\" bin/vitrail && exec bin/vitrail \"$@\"'");
+    const Result result =
+        run("render mesh.ply --effect voxels -r 16 --size 40x30 -o out.png", "sh -c 'cp \"$0\" bin/vitrail && exec bin/vitrail \"$@\"'");
     EXPECT_EQ(result.code, 1) << result.err;
     EXPECT_EQ(result.err.rfind("vitrail: the module for pictures", 0), 0u) << result.err;
     EXPECT_NE(result.err.find("libvitrail_images.so\n  try:    "), std::string::npos) << result.err;
@@ -326,7 +341,8 @@ TEST_F(Program, WrittenVoxelsScoreAsTheirMethod) {
 
 TEST_F(Program, JudgePrintsRates) {
     makeMesh("sphere");
-    const json judged = document(run("judge mesh.ply --ior 1.14 --resolution 64 --size 64x64 --views 2 --faults faults.png --json"), "vitrail.judge.1");
+    const json judged =
+        document(run("judge mesh.ply --ior 1.14 --resolution 64 --size 64x64 --views 2 --faults faults.png --json"), "vitrail.judge.1");
     EXPECT_EQ(judged["views"].size(), 2u);
     EXPECT_GT(judged["correct"], 0.98);
     EXPECT_GT(judged["stableCorrect"], 0.99);

@@ -74,8 +74,7 @@ TEST(Workspace, RefusesBeyondTheLimitAndTrimsBefore) {
     { const auto one = queue.workspace().take<char>(900 << 10, "one"); }
     const auto other = queue.workspace().take<char>(200 << 10, "another");
     EXPECT_LE(device.counters().deviceBytes, 1u << 20);
-    EXPECT_EQ(codeOf([&] { queue.workspace().take<char>(std::uint64_t(1) << 50, "more than any buffer"); }),
-              ErrorCode::outOfMemory);
+    EXPECT_EQ(codeOf([&] { queue.workspace().take<char>(std::uint64_t(1) << 50, "more than any buffer"); }), ErrorCode::outOfMemory);
 }
 
 TEST(Buffer, ReadsWhatWasWritten) {

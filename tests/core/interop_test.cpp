@@ -61,8 +61,8 @@ TEST(Interop, VoxelizesTheCallersBuffersOnTheCallersQueue) {
         EXPECT_EQ(device.counters().uploads, 0u);
         // The caller reads the bits behind the library's back.
         std::vector<std::uint32_t> words(expected.size());
-        EXPECT_EQ(clEnqueueReadBuffer(caller.queue, interop::handle(voxels.bits()), CL_TRUE, 0, words.size() * 4, words.data(), 0,
-                                      nullptr, nullptr),
+        EXPECT_EQ(clEnqueueReadBuffer(caller.queue, interop::handle(voxels.bits()), CL_TRUE, 0, words.size() * 4, words.data(), 0, nullptr,
+                                      nullptr),
                   CL_SUCCESS);
         EXPECT_EQ(words, expected);
         EXPECT_EQ(caller.references(positions), 2u);

@@ -110,8 +110,7 @@ TEST(Layout, DeviceAndHostAgree) {
 TEST(Layout, EveryStructIsProbed) {
     std::string names;
     for (const auto& [name, value] : hostLayout()) names += name + ' ';
-    for (const auto& file :
-         std::filesystem::directory_iterator(std::filesystem::path(VITRAIL_SOURCE_DIR) / "include/vitrail/layout")) {
+    for (const auto& file : std::filesystem::directory_iterator(std::filesystem::path(VITRAIL_SOURCE_DIR) / "include/vitrail/layout")) {
         std::ifstream in(file.path());
         for (std::string line; std::getline(in, line);)
             if (line.rfind("typedef struct ", 0) == 0) {

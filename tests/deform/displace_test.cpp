@@ -150,8 +150,7 @@ TEST(Displace, WhatDoesNotFitIsRefused) {
     DeviceMesh moved = rest.withOwnVertices(queue()), bareMoved = bare.withOwnVertices(queue()),
                otherMoved = other.withOwnVertices(queue());
     DeviceMesh same(queue(), mesh);
-    const Buffer<float> amounts = onDevice(std::vector<float>(mesh.positions.size(), 0.0f)),
-                        few = onDevice(std::vector<float>(3, 0.0f));
+    const Buffer<float> amounts = onDevice(std::vector<float>(mesh.positions.size(), 0.0f)), few = onDevice(std::vector<float>(3, 0.0f));
     const auto refused = [&](const std::function<void()>& call, const std::string& part) {
         const Counters before = queue().counters();
         try {

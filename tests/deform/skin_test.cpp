@@ -17,8 +17,8 @@
 #include "tests/deform/skinned_bar.h"
 #include "tests/support/cases.h"
 #include "tests/support/closed.h"
-#include "tests/support/data.h"
 #include "tests/support/counters.h"
+#include "tests/support/data.h"
 #include "tests/support/device.h"
 
 namespace vitrail {
@@ -213,8 +213,7 @@ TEST(Skinning, VoxelsAreThoseOfTheMovedMesh) {
     Mesh onHost = bar.mesh;
     onHost.positions = vectorsOf(moved.positions());
     const Grid grid = Grid::fit(moved.bounds(), 50);
-    EXPECT_EQ(voxelize(queue(), moved, grid, Conservative{}).host().words,
-              voxelize(queue(), onHost, grid, Conservative{}).host().words);
+    EXPECT_EQ(voxelize(queue(), moved, grid, Conservative{}).host().words, voxelize(queue(), onHost, grid, Conservative{}).host().words);
     EXPECT_EQ(moved.bounds().low, pose.bounds().low);
 }
 
@@ -283,11 +282,8 @@ TEST(Pose, TranslationsStepOrRunStraight) {
 TEST(Pose, SplinesFollowTheirTangents) {
     const auto cube = [](float t) { return t * t * t; };
     const auto slope = [](float t) { return 3 * t * t; };
-    AnimationChannel channel{.node = 0,
-                             .part = AnimatedPart::translation,
-                             .interpolation = Interpolation::cubicSpline,
-                             .times = {0, 2, 3},
-                             .values = {}};
+    AnimationChannel channel{
+        .node = 0, .part = AnimatedPart::translation, .interpolation = Interpolation::cubicSpline, .times = {0, 2, 3}, .values = {}};
     for (const float t : channel.times)
         for (const float v : {slope(t), 0.0f, 0.0f, cube(t), 5.0f, 0.0f, slope(t), 0.0f, 0.0f}) channel.values.push_back(v);
     const Skin rig = oneJoint(channel);
@@ -316,8 +312,7 @@ TEST(Pose, RotationsTakeTheShortWayAtConstantSpeed) {
 }
 
 TEST(Pose, MatricesOfNodesAndFromElsewhere) {
-    Skin rig = oneJoint(
-        {.node = 0, .part = AnimatedPart::scale, .interpolation = Interpolation::step, .times = {0}, .values = {3, 3, 3}});
+    Skin rig = oneJoint({.node = 0, .part = AnimatedPart::scale, .interpolation = Interpolation::step, .times = {0}, .values = {3, 3, 3}});
     Affine shear;
     shear.rows[0] = {1, 0.5f, 0, 7};
     rig.nodes[0].matrix = shear;
@@ -419,8 +414,8 @@ glm::dmat4 worldOf(const Skin& skin, const Animation* animation, double t, std::
         for (int r = 0; r < 3; ++r)
             for (int c = 0; c < 4; ++c) local[c][r] = double(n.matrix->rows[r][c]);
     } else {
-        glm::dvec4 trs[3] = {glm::dvec4(Double3(n.translation), 0),
-                             glm::dvec4(n.rotation.x, n.rotation.y, n.rotation.z, n.rotation.w), glm::dvec4(Double3(n.scale), 0)};
+        glm::dvec4 trs[3] = {glm::dvec4(Double3(n.translation), 0), glm::dvec4(n.rotation.x, n.rotation.y, n.rotation.z, n.rotation.w),
+                             glm::dvec4(Double3(n.scale), 0)};
         if (animation != nullptr)
             for (const AnimationChannel& c : animation->channels) {
                 if (c.node != static_cast<std::uint32_t>(node)) continue;
@@ -441,8 +436,8 @@ glm::dmat4 worldOf(const Skin& skin, const Animation* animation, double t, std::
                         a = glm::normalize(a), b = glm::normalize(b);
                         if (glm::dot(a, b) < 0) b = -b;
                         const double angle = std::acos(std::min(1.0, glm::dot(a, b)));
-                        value = angle < 1e-6 ? glm::mix(a, b, u)
-                                             : (std::sin((1 - u) * angle) * a + std::sin(u * angle) * b) / std::sin(angle);
+                        value =
+                            angle < 1e-6 ? glm::mix(a, b, u) : (std::sin((1 - u) * angle) * a + std::sin(u * angle) * b) / std::sin(angle);
                     } else {
                         value = glm::mix(a, b, u);
                     }
@@ -476,8 +471,8 @@ struct Figure {
 
 class RealSkin : public ::testing::TestWithParam<Figure> {};
 INSTANTIATE_TEST_SUITE_P(Files, RealSkin,
-                         ::testing::Values(Figure{"CesiumMan", 19, 1}, Figure{"Fox", 24, 3},
-                                           Figure{"Rig_Medium_MovementBasic", 23, 11}, Figure{"Knight", 23, 0}),
+                         ::testing::Values(Figure{"CesiumMan", 19, 1}, Figure{"Fox", 24, 3}, Figure{"Rig_Medium_MovementBasic", 23, 11},
+                                           Figure{"Knight", 23, 0}),
                          [](const auto& info) { return std::string(info.param.file); });
 
 // At rest the device puts every vertex where the reader, on another path and in double precision, had put it.

@@ -20,8 +20,7 @@ inline SkinnedBar skinnedBar(unsigned joints = 3, unsigned rings = 4, float degr
     const unsigned last = (joints - 1) * rings;
     for (unsigned ring = 0; ring <= last; ++ring) {
         const float y = static_cast<float>(ring) / static_cast<float>(rings);
-        for (const auto& [x, z] :
-             {std::pair(-half, -half), std::pair(-half, half), std::pair(half, half), std::pair(half, -half)}) {
+        for (const auto& [x, z] : {std::pair(-half, -half), std::pair(-half, half), std::pair(half, half), std::pair(half, -half)}) {
             bar.mesh.positions.push_back({x, y, z});
             const unsigned low = std::min(ring / rings, joints - 2);
             const float share = y - static_cast<float>(low);

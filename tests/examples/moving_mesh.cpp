@@ -25,8 +25,8 @@ int main() {
 
     int wrong = 0;
     {
-        const DeviceMesh mesh(interop::wrap<float>(positions, moved.size() * 3), interop::wrap<std::uint32_t>(indices, rest.indices.size()), {},
-                              {}, bounds);
+        const DeviceMesh mesh(interop::wrap<float>(positions, moved.size() * 3), interop::wrap<std::uint32_t>(indices, rest.indices.size()),
+                              {}, {}, bounds);
         std::optional<Counters> after;
         for (int frame = 0; frame < 10; ++frame) {
             for (std::size_t i = 0; i < moved.size(); ++i) {

@@ -36,8 +36,7 @@ int main() {
     vitrail::Device device = vitrail::Device::select();
     vitrail::Queue queue(device);
     const vitrail::Grid grid = vitrail::Grid::fit(mesh.bounds(), 100);
-    const vitrail::Voxels voxels =
-        vitrail::voxelize(queue, mesh, grid, vitrail::Conservative{.channels = vitrail::Channel::material});
+    const vitrail::Voxels voxels = vitrail::voxelize(queue, mesh, grid, vitrail::Conservative{.channels = vitrail::Channel::material});
 
     std::uint64_t right = 0;
     for (const std::uint32_t material : voxels.materials()) right += material;

@@ -9,7 +9,8 @@ int main() {
     // What the application has already.
     cl_platform_id platform;
     cl_device_id id;
-    if (clGetPlatformIDs(1, &platform, nullptr) != CL_SUCCESS || clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 1, &id, nullptr) != CL_SUCCESS)
+    if (clGetPlatformIDs(1, &platform, nullptr) != CL_SUCCESS ||
+        clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 1, &id, nullptr) != CL_SUCCESS)
         return 1;
     cl_context context = clCreateContext(nullptr, 1, &id, nullptr, nullptr, nullptr);
     cl_command_queue commands = clCreateCommandQueue(context, id, CL_QUEUE_PROFILING_ENABLE, nullptr);
@@ -27,12 +28,12 @@ int main() {
         vitrail::Queue queue = vitrail::interop::queue(device, commands);
         vitrail::interop::waitFor(queue, {&written, 1});  // of use where another queue writes
         const vitrail::Bounds bounds{{0, 0, 0}, {1, 1, 1}};
-        const vitrail::DeviceMesh mesh(vitrail::interop::wrap<float>(positions, 12), vitrail::interop::wrap<std::uint32_t>(indices, 6), {}, {},
-                                       bounds);
+        const vitrail::DeviceMesh mesh(vitrail::interop::wrap<float>(positions, 12), vitrail::interop::wrap<std::uint32_t>(indices, 6), {},
+                                       {}, bounds);
         const vitrail::Voxels voxels = vitrail::voxelize(queue, mesh, vitrail::Grid::fit(bounds, 64), vitrail::Conservative{});
 
-        cl_event done = vitrail::interop::marker(queue);            // for the application's next command, here a wait
-        cl_mem bits = vitrail::interop::handle(voxels.bits());      // layout: vitrail/layout/grid.h
+        cl_event done = vitrail::interop::marker(queue);        // for the application's next command, here a wait
+        cl_mem bits = vitrail::interop::handle(voxels.bits());  // layout: vitrail/layout/grid.h
         clWaitForEvents(1, &done);
         std::size_t bytes = 0;
         clGetMemObjectInfo(bits, CL_MEM_SIZE, sizeof bytes, &bytes, nullptr);

@@ -123,13 +123,7 @@ TEST(GridFit, Refuses) {
     }
     EXPECT_EQ(refusal([] { Grid::fit(Bounds(), 8); }, ErrorCode::badInput).what, "grid: the bounds are empty");
     refusal([] { Grid::fit({{0, 0, 0}, {1, -1, 1}}, 8); }, ErrorCode::badInput);
-    EXPECT_EQ(refusal(
-                  [] {
-                      Grid::fit({Float3(2.0f), Float3(2.0f)}, 8);
-                  },
-                  ErrorCode::badInput)
-                  .what,
-              "grid: the bounds are a single point");
+    EXPECT_EQ(refusal([] { Grid::fit({Float3(2.0f), Float3(2.0f)}, 8); }, ErrorCode::badInput).what, "grid: the bounds are a single point");
     for (const float bad : {kNan, kInf, -kInf}) {
         for (int axis = 0; axis < 3; ++axis) {
             Bounds low = unit, high = unit;
@@ -236,8 +230,7 @@ TEST(GridBox, WordsOfDifferentVoxelsAreDifferent) {
 }
 
 TEST(GridBox, Refuses) {
-    for (const Uint3 size :
-         {Uint3(0, 1, 1), Uint3(1, 0, 1), Uint3(1, 1, 0), Uint3(65536, 1, 1), Uint3(1, 65536, 1), Uint3(1, 1, 65536)}) {
+    for (const Uint3 size : {Uint3(0, 1, 1), Uint3(1, 0, 1), Uint3(1, 1, 0), Uint3(65536, 1, 1), Uint3(1, 65536, 1), Uint3(1, 1, 65536)}) {
         refusal([&] { Grid::box(Float3(0.0f), 1.0f, size); }, ErrorCode::badOption);
     }
     for (const float edge : {0.0f, -1.0f, kNan, kInf}) {
@@ -283,8 +276,7 @@ TEST(Grid, GoesToVoxelsAndBack) {
             const Float3 p(Double3(bounds.low) + (Double3(bounds.high) - Double3(bounds.low)) * share);
             const Double3 back = grid.toWorld(grid.toVoxel(p));
             // Three roundings of doubles, of at most the size of the coordinates.
-            for (int k = 0; k < 3; ++k)
-                EXPECT_NEAR(back[k], p[k], 4e-16 * (std::abs(double(p[k])) + 100 * double(grid.edge()))) << name;
+            for (int k = 0; k < 3; ++k) EXPECT_NEAR(back[k], p[k], 4e-16 * (std::abs(double(p[k])) + 100 * double(grid.edge()))) << name;
         }
     }
 }

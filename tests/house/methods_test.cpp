@@ -80,8 +80,8 @@ TEST(MethodTable, OptionsAreThoseOfTheTypes) {
         const auto collect = [&](const auto& method) {
             std::remove_cvref_t<decltype(method)>::visitOptions(method, [&](std::string_view name, const auto& value) {
                 fromType.insert(std::string(name));
-                const auto found = std::find_if(row.options.begin(), row.options.end(),
-                                                [&](const MethodOption& o) { return o.name == name; });
+                const auto found =
+                    std::find_if(row.options.begin(), row.options.end(), [&](const MethodOption& o) { return o.name == name; });
                 ASSERT_NE(found, row.options.end()) << name;
                 EXPECT_EQ(static_cast<double>(value), found->byDefault) << name;
             });

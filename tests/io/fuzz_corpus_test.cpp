@@ -68,8 +68,7 @@ TEST_P(EveryCorpus, GivesASceneOrAnError) {
             EXPECT_LE(largestRequest.load(), 64 * whole.size() + 65536);
         }
         if (whole.size() > 4000) continue;
-        for (std::size_t size = 0; size<whole.size(); size += whole.size()> 1000 ? 7 : 1)
-            read(std::string_view(whole).substr(0, size));
+        for (std::size_t size = 0; size<whole.size(); size += whole.size()> 1000 ? 7 : 1) read(std::string_view(whole).substr(0, size));
         for (int i = 0; i < 400 && !whole.empty(); ++i) {
             std::string changed = whole;
             for (int n = 0; n < 1 + i % 3; ++n) changed[random() % changed.size()] = static_cast<char>(random() >> 8);

@@ -21,8 +21,7 @@ inline std::string base64(const std::string& bytes) {
     std::string text;
     for (std::size_t i = 0; i < bytes.size(); i += 3) {
         std::uint32_t three = 0;
-        for (std::size_t k = 0; k < 3; ++k)
-            three = three << 8 | (i + k < bytes.size() ? static_cast<std::uint8_t>(bytes[i + k]) : 0u);
+        for (std::size_t k = 0; k < 3; ++k) three = three << 8 | (i + k < bytes.size() ? static_cast<std::uint8_t>(bytes[i + k]) : 0u);
         for (std::size_t k = 0; k < 4; ++k) text.push_back(i + k > bytes.size() ? '=' : kLetters[(three >> (18 - 6 * k)) & 63]);
     }
     return text;
@@ -59,8 +58,7 @@ struct Document {
         return json["bufferViews"].size() - 1;
     }
     std::size_t accessor(const std::string& data, int type, const char* shape, std::size_t count, std::size_t stride = 0) {
-        json["accessors"].push_back(
-            {{"bufferView", view(data, stride)}, {"componentType", type}, {"type", shape}, {"count", count}});
+        json["accessors"].push_back({{"bufferView", view(data, stride)}, {"componentType", type}, {"type", shape}, {"count", count}});
         return json["accessors"].size() - 1;
     }
     void attribute(const char* name, const std::string& data, int type, const char* shape, std::size_t count) {
@@ -78,8 +76,8 @@ struct Document {
         text.resize((text.size() + 3) / 4 * 4, ' ');
         data.resize((data.size() + 3) / 4 * 4, '\0');
         const auto u32 = [](std::size_t v) { return packed<std::uint32_t>({static_cast<std::uint32_t>(v)}); };
-        return "glTF" + u32(2) + u32(12 + 8 + text.size() + 8 + data.size()) + u32(text.size()) + "JSON" + text +
-               u32(data.size()) + std::string("BIN\0", 4) + data;
+        return "glTF" + u32(2) + u32(12 + 8 + text.size() + 8 + data.size()) + u32(text.size()) + "JSON" + text + u32(data.size()) +
+               std::string("BIN\0", 4) + data;
     }
 };
 
@@ -130,8 +128,8 @@ inline Document skinned() {
     Document d = tetrahedron();
     d.attribute("JOINTS_0", packed<std::uint8_t>({0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}), kU8, "VEC4", 4);
     d.attribute("WEIGHTS_0", packed<float>({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0.5f, 0.5f, 0, 0}), kFloat, "VEC4", 4);
-    const std::string matrices = packed<float>({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -10, 0, 1}) +
-                                 packed<float>({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
+    const std::string matrices =
+        packed<float>({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -10, 0, 1}) + packed<float>({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
     d.json["skins"] = {{{"joints", {1, 2}}, {"inverseBindMatrices", d.accessor(matrices, kFloat, "MAT4", 2)}}};
     // The mesh's node is moved far away: that must not show.
     d.json["nodes"] = {{{"mesh", 0}, {"skin", 0}, {"translation", {1000, 0, 0}}},

@@ -43,8 +43,7 @@ Float3 placed(const Pose& pose, std::size_t v) {
     const Skin& skin = pose.skin();
     Float3 sum(0);
     for (int k = 0; k < 4; ++k)
-        sum +=
-            skin.vertexWeights[v][k] * image(pose.joints()[skin.vertexJoints[v][static_cast<std::size_t>(k)]], skin.positions[v]);
+        sum += skin.vertexWeights[v][k] * image(pose.joints()[skin.vertexJoints[v][static_cast<std::size_t>(k)]], skin.positions[v]);
     return sum;
 }
 
@@ -179,11 +178,7 @@ TEST(GltfRig, AnimationFaultsAreErrors) {
     broken([&](Document& d, Json& a) { accessorOf(d, a, "output")["count"] = 1; }, "1 values for 2 keys");
     broken([&](Document& d, Json& a) { accessorOf(d, a, "output")["count"] = 3; }, "3 elements of 12 bytes");
     broken([&](Document& d, Json& a) { accessorOf(d, a, "output")["type"] = "VEC4"; }, "4 components where");
-    broken(
-        [&](Document& d, Json& a) {
-            accessorOf(d, a, "input")["bufferView"] = d.view(packed<float>({3, 1}));
-        },
-        "the time of key 1");
+    broken([&](Document& d, Json& a) { accessorOf(d, a, "input")["bufferView"] = d.view(packed<float>({3, 1})); }, "the time of key 1");
     broken(
         [&](Document& d, Json& a) {
             accessorOf(d, a, "input")["bufferView"] = d.view(packed<float>({std::nanf(""), 1}));

@@ -8,8 +8,8 @@
 #include <map>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <unistd.h>
+#include <nlohmann/json.hpp>
 
 #include <vitrail/core/error.h>
 #include <vitrail/io/image.h>
@@ -95,11 +95,8 @@ TEST(Gltf, InterleavedAndSparse) {
     const std::size_t view = d.view(both, 24);
     for (const char* name : {"POSITION", "NORMAL"}) {
         d.primitive()["attributes"][name] = d.json["accessors"].size();
-        d.json["accessors"].push_back({{"bufferView", view},
-                                       {"byteOffset", name[0] == 'P' ? 0 : 12},
-                                       {"componentType", kFloat},
-                                       {"type", "VEC3"},
-                                       {"count", 4}});
+        d.json["accessors"].push_back(
+            {{"bufferView", view}, {"byteOffset", name[0] == 'P' ? 0 : 12}, {"componentType", kFloat}, {"type", "VEC3"}, {"count", 4}});
     }
     d.primitive()["indices"] = d.accessor(kTetrahedronFaces, kU16, "SCALAR", 12);
     Scene scene = read(d);
@@ -240,8 +237,7 @@ TEST(Gltf, ColoursAndTexcoords) {
 
 TEST(Gltf, MorphTargetsAtTheirDefaultWeights) {
     Document d = tetrahedron();
-    d.primitive()["targets"] = {
-        {{"POSITION", d.accessor(packed<float>({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 4}), kFloat, "VEC3", 4)}}};
+    d.primitive()["targets"] = {{{"POSITION", d.accessor(packed<float>({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 4}), kFloat, "VEC3", 4)}}};
     EXPECT_EQ(read(d).mesh.positions[3], Float3(0, 0, 1));
     d.json["meshes"][0]["weights"] = {0.5};
     EXPECT_EQ(read(d).mesh.positions[3], Float3(0, 0, 3));
@@ -300,8 +296,8 @@ TEST(GltfSkin, FaultsAreErrors) {
 
 TEST(Gltf, MaterialsWithTheirExtensions) {
     Document d = tetrahedron();
-    d.json["extensionsRequired"] = {"KHR_materials_transmission", "KHR_materials_ior", "KHR_materials_volume",
-                                    "KHR_texture_transform", "KHR_materials_emissive_strength"};
+    d.json["extensionsRequired"] = {"KHR_materials_transmission", "KHR_materials_ior", "KHR_materials_volume", "KHR_texture_transform",
+                                    "KHR_materials_emissive_strength"};
     d.json["images"] = {{{"uri", "none.png"}}};
     d.json["textures"] = {{{"source", 0}}};
     d.json["materials"] = {
@@ -316,14 +312,12 @@ TEST(Gltf, MaterialsWithTheirExtensions) {
            {"metallicFactor", 0.25},
            {"baseColorTexture",
             {{"index", 0},
-             {"extensions",
-              {{"KHR_texture_transform", {{"offset", {0.5, 1}}, {"scale", {2, 3}}, {"rotation", 1.5}, {"texCoord", 1}}}}}}}}},
+             {"extensions", {{"KHR_texture_transform", {{"offset", {0.5, 1}}, {"scale", {2, 3}}, {"rotation", 1.5}, {"texCoord", 1}}}}}}}}},
          {"extensions",
           {{"KHR_materials_transmission", {{"transmissionFactor", 0.5}}},
            {"KHR_materials_ior", {{"ior", 1.55}}},
            {"KHR_materials_emissive_strength", {{"emissiveStrength", 4}}},
-           {"KHR_materials_volume",
-            {{"thicknessFactor", 2}, {"attenuationDistance", 0.5}, {"attenuationColor", {0.5, 0.25, 0}}}}}}},
+           {"KHR_materials_volume", {{"thicknessFactor", 2}, {"attenuationDistance", 0.5}, {"attenuationColor", {0.5, 0.25, 0}}}}}}},
         {{"alphaMode", "BLEND"}, {"extensions", {{"KHR_materials_ior", {{"ior", 0}}}}}}};
     d.primitive()["material"] = 0;
     const Scene scene = read(d);
@@ -485,8 +479,7 @@ TEST(GltfFault, Buffers) {
     EXPECT_EQ(failure(d, "bufferViews[1]"), ErrorCode::badFile) << "a view past the stated length";
     d.json["buffers"][0]["uri"] = "missing.bin";
     EXPECT_EQ(failure(d, "no folder"), ErrorCode::badFile);
-    for (const char* uri :
-         {"../missing.bin", "/etc/hostname", "%2e%2e/missing.bin", "a/../../b.bin", "https://example.org/a.bin", ""}) {
+    for (const char* uri : {"../missing.bin", "/etc/hostname", "%2e%2e/missing.bin", "a/../../b.bin", "https://example.org/a.bin", ""}) {
         d.json["buffers"][0]["uri"] = uri;
         EXPECT_EQ(failure(d.text(), "leads out", std::filesystem::temp_directory_path()), ErrorCode::badFile) << uri;
     }
@@ -607,13 +600,7 @@ INSTANTIATE_TEST_SUITE_P(
         RealFile{"TransmissionTest.glb", 66902, 128775, 14, 9, {-0.976f, -0.4f, -0.521f}, {0.826f, 0.621f, 1.368f}},
         RealFile{"GlassVaseFlowers.glb", 8550, 14036, 3, 1, {-0.0535f, 0, -0.0683f}, {0.1638f, 0.2032f, 0.0743f}},
         RealFile{"GlassHurricaneCandleHolder.glb", 2386, 4126, 2, 2, {-0.0952f, 0, -0.0952f}, {0.0952f, 0.3066f, 0.0952f}},
-        RealFile{"MosquitoInAmber/MosquitoInAmber.gltf",
-                 18678,
-                 14349,
-                 3,
-                 1,
-                 {-0.0496f, -0.0485f, -0.0511f},
-                 {0.0476f, 0.0511f, 0.0368f}},
+        RealFile{"MosquitoInAmber/MosquitoInAmber.gltf", 18678, 14349, 3, 1, {-0.0496f, -0.0485f, -0.0511f}, {0.0476f, 0.0511f, 0.0368f}},
         // Skinned figures stand upright on the ground, about y.
         RealFile{"CesiumMan.glb", 3273, 4672, 1, 1, {-0.569f, 0, -0.131f}, {0.569f, 1.507f, 0.181f}},
         RealFile{"Fox.glb", 1728, 576, 1, 1, {-12.59f, -0.12f, -88.1f}, {12.59f, 78.91f, 66.62f}},

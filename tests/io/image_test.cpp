@@ -148,8 +148,7 @@ TEST_F(Pictures, NoPictureIsAnError) {
 }
 
 TEST(Radiance, FlatPixels) {
-    const Picture picture =
-        fromText(hdrHead("-Y 2 +X 2") + rgbe(128, 64, 32) + rgbe(0, 0, 0, 0) + rgbe(255, 0, 0, 129) + rgbe(1, 1, 2));
+    const Picture picture = fromText(hdrHead("-Y 2 +X 2") + rgbe(128, 64, 32) + rgbe(0, 0, 0, 0) + rgbe(255, 0, 0, 129) + rgbe(1, 1, 2));
     ASSERT_EQ(picture.width, 2u);
     ASSERT_EQ(picture.height, 2u);
     EXPECT_EQ(picture.at(0, 0), Float4(0.5f, 0.25f, 0.125f, 1.0f));
@@ -194,10 +193,10 @@ TEST(Radiance, NewRunLengths) {
 TEST(Radiance, TurnedAxes) {
     const std::string a = rgbe(10, 0, 0), b = rgbe(20, 0, 0), c = rgbe(30, 0, 0), d = rgbe(40, 0, 0), e = rgbe(50, 0, 0),
                       f = rgbe(60, 0, 0);
-    const std::pair<const char*, std::string> cases[] = {
-        {"-Y 2 +X 3", a + b + c + d + e + f}, {"+Y 2 +X 3", d + e + f + a + b + c}, {"-Y 2 -X 3", c + b + a + f + e + d},
-        {"+Y 2 -X 3", f + e + d + c + b + a}, {"+X 3 -Y 2", a + d + b + e + c + f}, {"-X 3 -Y 2", c + f + b + e + a + d},
-        {"+X 3 +Y 2", d + a + e + b + f + c}, {"-X 3 +Y 2", f + c + e + b + d + a}};
+    const std::pair<const char*, std::string> cases[] = {{"-Y 2 +X 3", a + b + c + d + e + f}, {"+Y 2 +X 3", d + e + f + a + b + c},
+                                                         {"-Y 2 -X 3", c + b + a + f + e + d}, {"+Y 2 -X 3", f + e + d + c + b + a},
+                                                         {"+X 3 -Y 2", a + d + b + e + c + f}, {"-X 3 -Y 2", c + f + b + e + a + d},
+                                                         {"+X 3 +Y 2", d + a + e + b + f + c}, {"-X 3 +Y 2", f + c + e + b + d + a}};
     for (const auto& [axes, pixels] : cases) {
         const Picture picture = fromText(hdrHead(axes) + pixels);
         ASSERT_EQ(picture.width, 3u) << axes;
@@ -217,9 +216,8 @@ TEST(Radiance, TheLargestExponentIsFinite) {
 
 TEST(Radiance, BadSizesAreErrors) {
     const std::string pixels(4096, '\x40');
-    for (const char* resolution :
-         {"-Y 0 +X 0", "-Y 0 +X 4", "-Y 4 +X 0", "-Y -4 +X 4", "-Y 4 +X -4", "-Y 4", "4 4", "-Y 4 +Y 4", "",
-          "-Y 99999999999 +X 4", "-Y 2000000000 +X 2000000000", "-Y 20000 +X 4", "-Y 16384 +X 16384"}) {
+    for (const char* resolution : {"-Y 0 +X 0", "-Y 0 +X 4", "-Y 4 +X 0", "-Y -4 +X 4", "-Y 4 +X -4", "-Y 4", "4 4", "-Y 4 +Y 4", "",
+                                   "-Y 99999999999 +X 4", "-Y 2000000000 +X 2000000000", "-Y 20000 +X 4", "-Y 16384 +X 16384"}) {
         EXPECT_EQ(codeOf(hdrHead(resolution) + pixels), ErrorCode::badFile) << resolution;
     }
     EXPECT_EQ(codeOf("#?RADIANCE\n"), ErrorCode::badFile);

@@ -19,8 +19,7 @@ Scene read(const std::string& text, const std::filesystem::path& folder = {}) {
 }
 
 /// Expects an Error whose place ends in `place` and whose message holds `part`.
-void expectError(const std::string& text, const std::string& place, const std::string& part,
-                 ErrorCode code = ErrorCode::badFile) {
+void expectError(const std::string& text, const std::string& place, const std::string& part, ErrorCode code = ErrorCode::badFile) {
     try {
         read(text);
         ADD_FAILURE() << "no error in " << text;
@@ -72,8 +71,7 @@ TEST(JsonScene, EveryMaterialMember) {
 }
 
 TEST(JsonScene, CameraLightAndGradient) {
-    const Scene scene =
-        read(withMesh(R"("camera": {"eye": [1, 2, 3], "target": [4, 5, 6], "up": [0, 0, 1], "fieldOfViewDegrees": 60,
+    const Scene scene = read(withMesh(R"("camera": {"eye": [1, 2, 3], "target": [4, 5, 6], "up": [0, 0, 1], "fieldOfViewDegrees": 60,
         "orthographicHeight": 2, "width": 64, "height": 32}, "light": {"toLight": [0, 1, 0], "radiance": [1, 2, 3]},
         "environment": {"zenith": [1, 0, 0], "horizon": [0, 1, 0], "nadir": [0, 0, 1], "intensity": 2, "yawDegrees": 90})"));
     ASSERT_TRUE(scene.camera);
@@ -117,8 +115,7 @@ TEST(JsonScene, FilesBringTheirMaterialsAndPictures) {
     savePicture(folder / "wood.png", Picture(2, 2, Float4(4.0f)));
     savePicture(folder / "sky.exr", Picture(4, 2, Float4(2.0f, 2.0f, 2.0f, 1.0f)));
     // One triangle, green, in a glTF file.
-    std::ofstream(folder / "sub" / "a.gltf")
-        << R"({"asset": {"version": "2.0"}, "nodes": [{"mesh": 0}], "buffers": [{"byteLength": 36,
+    std::ofstream(folder / "sub" / "a.gltf") << R"({"asset": {"version": "2.0"}, "nodes": [{"mesh": 0}], "buffers": [{"byteLength": 36,
         "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
         "bufferViews": [{"buffer": 0, "byteLength": 36}], "accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 3}],
         "materials": [{"name": "green", "pbrMetallicRoughness": {"baseColorFactor": [0, 1, 0, 1]}}],
@@ -181,28 +178,23 @@ TEST(JsonScene, TheExampleOfTheReadme) {
 
 TEST(JsonScene, UnknownKeysAreNamedWithTheirPlace) {
     expectError(withMesh("\"lights\": []"), "lights", "unknown key \"lights\"");
-    expectError("{\"meshes\": [{\"shape\": \"box\"}, {\"shape\": \"box\", \"colour\": 1}]}", "meshes[1].colour",
-                "unknown key \"colour\"");
-    expectError(R"({"meshes": [{"shape": "box", "transform": {"move": 1}}]})", "meshes[0].transform.move",
-                "scale, rotate, translate");
+    expectError("{\"meshes\": [{\"shape\": \"box\"}, {\"shape\": \"box\", \"colour\": 1}]}", "meshes[1].colour", "unknown key \"colour\"");
+    expectError(R"({"meshes": [{"shape": "box", "transform": {"move": 1}}]})", "meshes[0].transform.move", "scale, rotate, translate");
     expectError(withMesh(R"("materials": [{"name": "m", "color": [1, 1, 1]}])"), "materials[0].color", "baseColour");
     expectError(withMesh(R"("camera": {"fov": 30})"), "camera.fov", "fieldOfViewDegrees");
     expectError(withMesh(R"("light": {"direction": 1})"), "light.direction", "toLight");
     expectError(withMesh(R"("environment": {"map": 1})"), "environment.map", "yawDegrees");
-    expectError(R"({"meshes": [{"shape": "box", "transform": {"rotate": {"angle": 3}}}]})", "meshes[0].transform.rotate.angle",
-                "degrees");
+    expectError(R"({"meshes": [{"shape": "box", "transform": {"rotate": {"angle": 3}}}]})", "meshes[0].transform.rotate.angle", "degrees");
 }
 
 TEST(JsonScene, ValuesOutOfRangeAreNamedWithTheirPlace) {
-    expectError(withMesh(R"("materials": [{"name": "m", "indexOfRefraction": 0.5}])"), "materials[0].indexOfRefraction",
-                "1.0 to 3.0");
+    expectError(withMesh(R"("materials": [{"name": "m", "indexOfRefraction": 0.5}])"), "materials[0].indexOfRefraction", "1.0 to 3.0");
     expectError(withMesh(R"("materials": [{"name": "m", "baseColour": [1, 2, 0]}])"), "materials[0].baseColour[1]", "0.0 to 1.0");
     expectError(withMesh(R"("materials": [{"name": "m", "baseColour": [1, 2]}])"), "materials[0].baseColour", "3 numbers");
     expectError(withMesh(R"("materials": [{"name": "m", "attenuationColour": [1, 0, 1]}])"), "materials[0].attenuationColour[1]",
                 "above 0");
     expectError(withMesh(R"("materials": [{"name": "m", "thickness": -1}])"), "materials[0].thickness", "0.0 or more");
-    expectError(withMesh(R"("materials": [{"name": "m", "alphaMode": "cut"}])"), "materials[0].alphaMode",
-                "opaque, mask or blend");
+    expectError(withMesh(R"("materials": [{"name": "m", "alphaMode": "cut"}])"), "materials[0].alphaMode", "opaque, mask or blend");
     expectError(withMesh(R"("materials": [{"name": "m", "doubleSided": 1}])"), "materials[0].doubleSided", "true or false");
     expectError(withMesh(R"("materials": [{"alpha": 1}])"), "materials[0].name", "name");
     expectError(withMesh(R"("materials": [{"name": "m"}, {"name": "m"}])"), "materials[1].name", "second material");
@@ -236,8 +228,7 @@ TEST(JsonScene, MeshFaults) {
     expectError(R"({"meshes": [{"shape": "box", "material": "m"}]})", "meshes[0].material", "no material \"m\"");
     expectError(R"({"meshes": [{"shape": "box", "transform": {"scale": 0}}]})", "meshes[0].transform.scale", "flattens");
     expectError(R"({"meshes": [{"shape": "box", "transform": {"scale": 1e31}}]})", "meshes[0].transform.scale", "out of range");
-    expectError(R"({"meshes": [{"shape": "box", "transform": {"rotate": {"degrees": 1}}}]})", "meshes[0].transform.rotate",
-                "axis");
+    expectError(R"({"meshes": [{"shape": "box", "transform": {"rotate": {"degrees": 1}}}]})", "meshes[0].transform.rotate", "axis");
     expectError(R"({"meshes": [{"shape": "box", "transform": {"rotate": {"axis": [0, 0, 0], "degrees": 1}}}]})",
                 "meshes[0].transform.rotate.axis", "no length");
     expectError("{\"meshes\": [{\"shape\": \"box\"}]", "", "line 1");

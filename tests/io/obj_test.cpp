@@ -15,11 +15,10 @@ using test::readScene;
 const std::string kVertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
 TEST(Obj, IndicesFromEitherEndAndLineEndsOfAnyKind) {
-    for (const std::string& file :
-         std::vector<std::string>{kVertices + "f 1 2 3\n", kVertices + "f -3 -2 -1", "f 1 2 3\n" + kVertices,
-                                  "v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nf 1 2 3\r\n", "v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3\r",
-                                  "\xef\xbb\xbf" + kVertices + "f 1 2 3 # all of it\n", kVertices + "f 1 \\\n 2\\\r\n 3\n",
-                                  kVertices + "  f\t1/ 2// 3\n", kVertices + "l 1 2\np 1\ncurv 0 1 1 2\nf +1 2 3\n"}) {
+    for (const std::string& file : std::vector<std::string>{
+             kVertices + "f 1 2 3\n", kVertices + "f -3 -2 -1", "f 1 2 3\n" + kVertices, "v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nf 1 2 3\r\n",
+             "v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3\r", "\xef\xbb\xbf" + kVertices + "f 1 2 3 # all of it\n",
+             kVertices + "f 1 \\\n 2\\\r\n 3\n", kVertices + "  f\t1/ 2// 3\n", kVertices + "l 1 2\np 1\ncurv 0 1 1 2\nf +1 2 3\n"}) {
         const Mesh mesh = readMesh("obj", file);
         EXPECT_EQ(mesh.positions, (std::vector<Float3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})) << file;
         EXPECT_EQ(mesh.indices, (std::vector<std::uint32_t>{0, 1, 2})) << file;
@@ -134,16 +133,14 @@ TEST_F(ObjMaterials, OneAFace) {
           "newmtl thin\nKd 0.5 1 1\nNi 1\nillum 4\nd 0.25\n"
           "newmtl veil\nTf 1 1 1\nd 0.25\nillum 2\nNi 99\n"
           "newmtl unused\nmap_Kd missing.png\n");
-    const Scene scene =
-        readScene("obj",
-                  "mtllib a b.mtl\n" + kVertices +
-                      "f 1 2 3\nusemtl glass\nf 1 2 3\nusemtl grey\nf 1 2 3\nusemtl glass\nf 3 2 1\nusemtl veil\nf 1 2 3\n"
-                      "usemtl thin\nf 1 2 3\nusemtl nobody\nf 1 2 3\n",
-                  folder_);
+    const Scene scene = readScene("obj",
+                                  "mtllib a b.mtl\n" + kVertices +
+                                      "f 1 2 3\nusemtl glass\nf 1 2 3\nusemtl grey\nf 1 2 3\nusemtl glass\nf 3 2 1\nusemtl veil\nf 1 2 3\n"
+                                      "usemtl thin\nf 1 2 3\nusemtl nobody\nf 1 2 3\n",
+                                  folder_);
     EXPECT_EQ(scene.mesh.materials, (std::vector<std::uint32_t>{0, 1, 2, 1, 3, 4, 5}));
     ASSERT_EQ(scene.materials.size(), 6u);
-    const Material &glass = scene.materials[1], &grey = scene.materials[2], &veil = scene.materials[3],
-                   &thin = scene.materials[4];
+    const Material &glass = scene.materials[1], &grey = scene.materials[2], &veil = scene.materials[3], &thin = scene.materials[4];
     EXPECT_EQ(glass.name, "glass");
     EXPECT_EQ(glass.transmission, 1.0f);
     EXPECT_EQ(glass.baseColour, Float3(0.9f, 0.8f, 0.7f));
@@ -172,8 +169,7 @@ TEST_F(ObjMaterials, TexturesAreReadOnceOrMissed) {
           "newmtl d\nmap_Kd broken.png\n");
     write("two.ppm", "P6\n2 2\n255\n" + std::string(12, '\x7f'));
     write("broken.png", "no picture");
-    const std::string file =
-        "mtllib m.mtl\n" + kVertices + "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl c\nf 1 2 3\nusemtl d\nf 1 2 3\n";
+    const std::string file = "mtllib m.mtl\n" + kVertices + "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl c\nf 1 2 3\nusemtl d\nf 1 2 3\n";
     const Scene scene = readScene("obj", file, folder_);
     ASSERT_EQ(scene.materials.size(), 4u);
     EXPECT_EQ(scene.textures.size(), 1u);

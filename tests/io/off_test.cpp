@@ -51,8 +51,7 @@ TEST(Off, Binary) {
     const Mesh mesh = readMesh("off", good);
     EXPECT_EQ(mesh.positions[1], Float3(1, 0, 0));
     EXPECT_EQ(mesh.triangleCount(), 1u);
-    for (std::size_t size = 0; size < good.size(); ++size)
-        EXPECT_TRUE(test::readError("off", good.substr(0, size)).has_value()) << size;
+    for (std::size_t size = 0; size < good.size(); ++size) EXPECT_TRUE(test::readError("off", good.substr(0, size)).has_value()) << size;
     expectBad("off", "OFF BINARY\n" + i(0x7fffffff) + i(1) + i(0) + vertices, "made.off, byte 11", "2147483647 vertices");
     expectBad("off", "OFF BINARY\n" + i(-1) + i(1) + i(0) + vertices, "made.off, byte 11", "-1 vertices");
     expectBad("off", "OFF BINARY\n" + i(3) + i(1) + i(0) + vertices + i(1000) + i(0) + i(1) + i(2) + i(0), "made.off, byte 59",

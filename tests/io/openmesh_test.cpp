@@ -30,9 +30,7 @@ public:
         return om::VertexHandle(static_cast<int>(positions.size()) - 1);
     }
     om::VertexHandle add_vertex() override { return add_vertex(om::Vec3f(0.0f)); }
-    void set_point(om::VertexHandle v, const om::Vec3f& p) override {
-        positions[static_cast<std::size_t>(v.idx())] = {p[0], p[1], p[2]};
-    }
+    void set_point(om::VertexHandle v, const om::Vec3f& p) override { positions[static_cast<std::size_t>(v.idx())] = {p[0], p[1], p[2]}; }
     om::FaceHandle add_face(const VHandles& corners) override {
         onlyTriangles = onlyTriangles && corners.size() == 3;
         for (const om::VertexHandle v : corners) triangles.push_back(static_cast<std::uint32_t>(v.idx()));
@@ -98,15 +96,13 @@ class EveryFileOpenMeshReads : public testing::TestWithParam<const char*> {};
 TEST_P(EveryFileOpenMeshReads, ArrivesTheSame) {
     const std::filesystem::path file = test::dataFile(GetParam());
     VITRAIL_NEEDS_DATA(file);
-    om::IO::BaseReader& reader =
-        file.extension() == ".off" ? static_cast<om::IO::BaseReader&>(om::IO::OFFReader()) : om::IO::PLYReader();
+    om::IO::BaseReader& reader = file.extension() == ".off" ? static_cast<om::IO::BaseReader&>(om::IO::OFFReader()) : om::IO::PLYReader();
     expectSame(reader, std::ifstream(file, std::ios::binary), load(file));
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, EveryFileOpenMeshReads,
-                         testing::Values("meshes/dragon_vrip_res2.ply", "meshes/bun_zipper.ply", "meshes/buddha.ply",
-                                         "meshes/horse.ply", "meshes/turbineblade.ply", "meshes/teapot.ply",
-                                         "meshes/fertility.off"),
+                         testing::Values("meshes/dragon_vrip_res2.ply", "meshes/bun_zipper.ply", "meshes/buddha.ply", "meshes/horse.ply",
+                                         "meshes/turbineblade.ply", "meshes/teapot.ply", "meshes/fertility.off"),
                          [](const auto& info) { return "Number" + std::to_string(info.index); });
 
 TEST(OpenMesh, ReadsTheSameStl) {
@@ -117,7 +113,8 @@ TEST(OpenMesh, ReadsTheSameStl) {
 }
 
 TEST(OpenMesh, ReadsWhatSaveMeshWrites) {
-    const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / ("vitrail_openmesh_" + std::to_string(::getpid()) + ".ply");
+    const std::filesystem::path file =
+        std::filesystem::path(testing::TempDir()) / ("vitrail_openmesh_" + std::to_string(::getpid()) + ".ply");
     Mesh mesh;
     mesh.positions = {{0, 0, 0}, {0.1f, 0, 0}, {0, 1e-30f, 0}, {3, 4, 5}};
     mesh.normals.assign(4, Float3(0, 0, 1));

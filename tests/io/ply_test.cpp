@@ -55,8 +55,8 @@ TEST(Ply, EveryTypeAndByteOrder) {
             std::string xyz;
             for (const char* axis : {"x", "y", "z"}) xyz += "property " + type + " " + axis + "\n";
             const std::string count = indices && type[0] != 'f' && type[0] != 'd' ? type : "uchar";
-            std::string file = header(
-                format, "element vertex 3\n" + xyz + "element face 1\nproperty list " + count + " " + type + " vertex_indices\n");
+            std::string file =
+                header(format, "element vertex 3\n" + xyz + "element face 1\nproperty list " + count + " " + type + " vertex_indices\n");
             file += n(0) + n(0) + n(0) + n(100) + n(0) + n(0) + n(0) + n(100) + n(0);
             file += (count == "uchar" ? bytesOf<std::uint8_t>(3) : n(3)) + n(0) + n(1) + n(2);
             const Mesh mesh = readMesh("ply", file);
@@ -76,8 +76,7 @@ TEST(Ply, EveryTypeAndByteOrder) {
 
 // In ascii only the values count, not the widths that the header promises for them.
 TEST(Ply, WideCountsInAscii) {
-    const std::string file =
-        header("ascii", "element vertex 3\n" + kXyz + "element face 1\nproperty list uint uint vertex_index\n");
+    const std::string file = header("ascii", "element vertex 3\n" + kXyz + "element face 1\nproperty list uint uint vertex_index\n");
     EXPECT_EQ(readMesh("ply", file + kTriangleData).triangleCount(), 1u);
 }
 
@@ -92,18 +91,15 @@ TEST(Ply, UnknownElementsAndListsArePassedOver) {
     const std::string elements =
         "element camera 2\nproperty list uchar float lens\nproperty double focus\nelement vertex 3\n"
         "property list uchar short tags\n" +
-        kXyz + "element face 1\nproperty list uchar float weights\n" + kFaceList +
-        "property uchar flags\nelement edge 1\nproperty int a\n";
-    const Mesh ascii =
-        readMesh("ply", header("ascii", elements) + "2 1 2 3\n0 7\n0 0 0 0\n1 5 1 0 0\n0 0 1 0\n1 0.5 3 0 1 2 9\n4\n");
+        kXyz + "element face 1\nproperty list uchar float weights\n" + kFaceList + "property uchar flags\nelement edge 1\nproperty int a\n";
+    const Mesh ascii = readMesh("ply", header("ascii", elements) + "2 1 2 3\n0 7\n0 0 0 0\n1 5 1 0 0\n0 0 1 0\n1 0.5 3 0 1 2 9\n4\n");
     EXPECT_EQ(ascii.positions[1], Float3(1, 0, 0));
     const auto b = [](int v) { return bytesOf(static_cast<std::uint8_t>(v)); };
     const auto f = [](float v) { return bytesOf(v); };
     const auto i = [](int v) { return bytesOf(v); };
-    const Mesh binary =
-        readMesh("ply", header("binary_little_endian", elements) + b(2) + f(1) + f(2) + bytesOf(3.0) + b(0) + bytesOf(7.0) +
-                            b(0) + f(0) + f(0) + f(0) + b(1) + bytesOf<std::int16_t>(5) + f(1) + f(0) + f(0) + b(0) + f(0) +
-                            f(1) + f(0) + b(1) + f(0.5f) + b(3) + i(0) + i(1) + i(2) + b(9) + i(4));
+    const Mesh binary = readMesh("ply", header("binary_little_endian", elements) + b(2) + f(1) + f(2) + bytesOf(3.0) + b(0) + bytesOf(7.0) +
+                                            b(0) + f(0) + f(0) + f(0) + b(1) + bytesOf<std::int16_t>(5) + f(1) + f(0) + f(0) + b(0) + f(0) +
+                                            f(1) + f(0) + b(1) + f(0.5f) + b(3) + i(0) + i(1) + i(2) + b(9) + i(4));
     EXPECT_EQ(binary.positions, ascii.positions);
     EXPECT_EQ(binary.indices, ascii.indices);
 }
@@ -122,9 +118,8 @@ TEST(Ply, PolygonsOfManyCorners) {
 }
 
 TEST(Ply, StripsAlternateAndRestart) {
-    const std::string file =
-        header("ascii", "element vertex 5\n" + kXyz + "element tristrips 2\nproperty list int int vertex_indices\n") +
-        "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n";
+    const std::string file = header("ascii", "element vertex 5\n" + kXyz + "element tristrips 2\nproperty list int int vertex_indices\n") +
+                             "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n";
     const Mesh mesh = readMesh("ply", file + "9 0 1 2 3 4 -1 2 1 0\n4 0 0 1 2\n");
     EXPECT_EQ(mesh.indices, (std::vector<std::uint32_t>{0, 1, 2, 2, 1, 3, 2, 3, 4, 2, 1, 0, 1, 0, 2}));
     expectBad("ply", file + "3 0 1 5\n0\n", "made.ply:15", "names vertex 5");
@@ -137,8 +132,7 @@ TEST(Ply, AttributesOfVertices) {
                             "property float nx\nproperty float ny\nproperty float nz\nproperty uchar red\nproperty uchar "
                             "green\nproperty uchar blue\nproperty float s\nproperty float t\nelement face 1\n" +
                             kFaceList);
-    const Mesh mesh =
-        readMesh("ply", file + "0 0 0 0 0 1 255 0 188 0.25 0.75\n1 0 0 0 0 1 0 0 0 1 0\n0 1 0 0 0 1 0 0 0 0 1\n3 0 1 2\n");
+    const Mesh mesh = readMesh("ply", file + "0 0 0 0 0 1 255 0 188 0.25 0.75\n1 0 0 0 0 1 0 0 0 1 0\n0 1 0 0 0 1 0 0 0 0 1\n3 0 1 2\n");
     EXPECT_EQ(mesh.normals, std::vector<Float3>(3, Float3(0, 0, 1)));
     EXPECT_EQ(mesh.texcoords[0], Float2(0.25f, 0.25f));  // v runs down the picture
     EXPECT_EQ(mesh.colours[0].x, 1.0f);
@@ -146,8 +140,7 @@ TEST(Ply, AttributesOfVertices) {
     EXPECT_NEAR(mesh.colours[0].z, 0.5028864580325687, 1e-6);  // ((188/255 + 0.055) / 1.055)^2.4
     EXPECT_EQ(mesh.colours[0].w, 1.0f);
 
-    const Mesh dropped =
-        readMesh("ply", file + "0 0 0 0 0 nan 255 0 0 0 0\n1 0 0 0 0 1 0 0 0 1 0\n0 1 0 0 0 1 0 0 0 inf 1\n3 0 1 2\n");
+    const Mesh dropped = readMesh("ply", file + "0 0 0 0 0 nan 255 0 0 0 0\n1 0 0 0 0 1 0 0 0 1 0\n0 1 0 0 0 1 0 0 0 inf 1\n3 0 1 2\n");
     EXPECT_TRUE(dropped.normals.empty());
     EXPECT_TRUE(dropped.texcoords.empty());
     EXPECT_TRUE(test::contains(dropped.repairs, "normals were left out: 1"));
@@ -156,8 +149,7 @@ TEST(Ply, AttributesOfVertices) {
 
 TEST(Ply, HeadersThatClaimTooMuch) {
     const auto counts = [](const std::string& vertices, const std::string& faces) {
-        return header("ascii", "element vertex " + vertices + "\n" + kXyz + "element face " + faces + "\n" + kFaceList) +
-               kTriangleData;
+        return header("ascii", "element vertex " + vertices + "\n" + kXyz + "element face " + faces + "\n" + kFaceList) + kTriangleData;
     };
     expectBad("ply", counts("-3", "1"), "made.ply:3", "negative count -3");
     expectBad("ply", counts("3", "-1"), "made.ply:7", "negative count -1");
@@ -182,8 +174,7 @@ TEST(Ply, ListsThatClaimTooMuch) {
     const std::string indices = bytesOf(0) + bytesOf(1) + bytesOf(2);
     EXPECT_EQ(readMesh("ply", binary + bytesOf(3) + indices).triangleCount(), 1u);
     expectBad("ply", binary + bytesOf(-1) + indices, "made.ply, byte " + std::to_string(face), "a list of -1 values");
-    expectBad("ply", binary + bytesOf(0x7fffffff) + indices, "made.ply, byte " + std::to_string(face),
-              "a list of 2147483647 values");
+    expectBad("ply", binary + bytesOf(0x7fffffff) + indices, "made.ply, byte " + std::to_string(face), "a list of 2147483647 values");
     expectBad("ply", binary + bytesOf(4) + indices, "made.ply, byte " + std::to_string(face), "a list of 4 values");
 }
 
@@ -215,8 +206,7 @@ TEST(Ply, HeadersThatAreNone) {
 }
 
 TEST(Ply, MeshesWithoutTriangles) {
-    expectBad("ply", header("ascii", "element vertex 3\n" + kXyz) + "0 0 0\n1 0 0\n0 1 0\n", "made.ply",
-              "3 vertices and no face");
+    expectBad("ply", header("ascii", "element vertex 3\n" + kXyz) + "0 0 0\n1 0 0\n0 1 0\n", "made.ply", "3 vertices and no face");
     expectBad("ply", header("ascii", "element vertex 0\n" + kXyz + "element face 0\n" + kFaceList), "made.ply", "no triangles");
     expectBad("ply", triangle() + "0 0 0\n1 0 0\n0 1 0\n2 0 1\n", "made.ply", "no face of three corners");
 }

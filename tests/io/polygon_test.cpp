@@ -64,11 +64,10 @@ TEST(Polygon, ConvexOnesAreFans) {
 }
 
 TEST(Polygon, ConcaveOnes) {
-    expectCoveredHoweverTurned({{0, 0, 0}, {4, 0, 0}, {1, 1, 0}, {0, 4, 0}});                        // an arrow head
-    expectCoveredHoweverTurned({{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}});  // an L
+    expectCoveredHoweverTurned({{0, 0, 0}, {4, 0, 0}, {1, 1, 0}, {0, 4, 0}});                                              // an arrow head
+    expectCoveredHoweverTurned({{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}});                        // an L
     expectCoveredHoweverTurned({{0, 0, 0}, {5, 0, 0}, {5, 3, 0}, {4, 3, 0}, {4, 1, 0}, {1, 1, 0}, {1, 3, 0}, {0, 3, 0}});  // a U
-    expectCoveredHoweverTurned(
-        {{0, 0, 0}, {6, 0, 0}, {6, 3, 0}, {5, 1, 0}, {4, 3, 0}, {3, 1, 0}, {2, 3, 0}, {1, 1, 0}, {0, 3, 0}});
+    expectCoveredHoweverTurned({{0, 0, 0}, {6, 0, 0}, {6, 3, 0}, {5, 1, 0}, {4, 3, 0}, {3, 1, 0}, {2, 3, 0}, {1, 1, 0}, {0, 3, 0}});
 }
 
 TEST(Polygon, CornersOnALineAndTwice) {
@@ -84,8 +83,7 @@ TEST(Polygon, AHoleOnABridge) {
 
 TEST(Polygon, Spiral) {
     std::vector<Float3> spiral;
-    for (int i = 0; i <= 200; ++i)
-        spiral.emplace_back((1 + i * 0.05f) * std::cos(i * 0.1f), (1 + i * 0.05f) * std::sin(i * 0.1f), 0.0f);
+    for (int i = 0; i <= 200; ++i) spiral.emplace_back((1 + i * 0.05f) * std::cos(i * 0.1f), (1 + i * 0.05f) * std::sin(i * 0.1f), 0.0f);
     for (int i = 200; i >= 0; --i)
         spiral.emplace_back((1.5f + i * 0.05f) * std::cos(i * 0.1f), (1.5f + i * 0.05f) * std::sin(i * 0.1f), 0.0f);
     expectCovered(spiral);

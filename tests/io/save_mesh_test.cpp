@@ -33,8 +33,7 @@ Mesh wavy(std::size_t rows) {
     Mesh mesh;
     for (std::size_t y = 0; y <= rows; ++y)
         for (std::size_t x = 0; x <= rows; ++x) {
-            mesh.positions.emplace_back(0.1f * static_cast<float>(x), 1.0f / static_cast<float>(1 + x + y),
-                                        -0.3f * static_cast<float>(y));
+            mesh.positions.emplace_back(0.1f * static_cast<float>(x), 1.0f / static_cast<float>(1 + x + y), -0.3f * static_cast<float>(y));
             mesh.normals.emplace_back(0.1f * static_cast<float>(x), 1.0f, 0.0f);
         }
     const auto at = [&](std::size_t x, std::size_t y) { return static_cast<std::uint32_t>(y * (rows + 1) + x); };

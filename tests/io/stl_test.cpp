@@ -31,8 +31,7 @@ const Facet kUpper = {Float3(1, 0, 0), Float3(1, 1, 0), Float3(0, 1, 0)};
 std::string facet(const std::string& a, const std::string& b, const std::string& c) {
     return "facet normal 0 0 1\n outer loop\n  vertex " + a + "\n  vertex " + b + "\n  vertex " + c + "\n endloop\nendfacet\n";
 }
-const std::string kAscii =
-    "solid made\n" + facet("0 0 0", "1 0 0", "0 1 0") + facet("1 0 0", "1 1 0", "0 1 0") + "endsolid made\n";
+const std::string kAscii = "solid made\n" + facet("0 0 0", "1 0 0", "0 1 0") + facet("1 0 0", "1 1 0", "0 1 0") + "endsolid made\n";
 
 TEST(Stl, BothKindsMergeEqualVertices) {
     for (const std::string& file : {binary({kLower, kUpper}), binary({kLower, kUpper}, "solid but binary"), kAscii}) {
@@ -69,11 +68,9 @@ TEST(Stl, SizeAndCountDisagree) {
     expectBad("stl", binary({}), "made.stl", "no triangles");
     expectBad("stl", "", "made.stl", "empty");
     expectBad("stl", "hello", "made.stl", "neither");
-    for (std::size_t size = 0; size < good.size(); ++size)
-        EXPECT_TRUE(test::readError("stl", good.substr(0, size)).has_value()) << size;
+    for (std::size_t size = 0; size < good.size(); ++size) EXPECT_TRUE(test::readError("stl", good.substr(0, size)).has_value()) << size;
     const std::string solid = binary({kLower, kUpper}, "solid but binary");
-    for (std::size_t size = 0; size < solid.size(); ++size)
-        EXPECT_TRUE(test::readError("stl", solid.substr(0, size)).has_value()) << size;
+    for (std::size_t size = 0; size < solid.size(); ++size) EXPECT_TRUE(test::readError("stl", solid.substr(0, size)).has_value()) << size;
 }
 
 TEST(Stl, AsciiInAnyCaseAndSeveralSolids) {
@@ -81,17 +78,14 @@ TEST(Stl, AsciiInAnyCaseAndSeveralSolids) {
     for (char& c : upper) c = static_cast<char>(std::toupper(c));
     EXPECT_EQ(readMesh("stl", upper).triangleCount(), 2u);
     EXPECT_EQ(readMesh("stl", kAscii + kAscii).triangleCount(), 4u);
-    EXPECT_EQ(
-        readMesh("stl", "solid\r\nfacet\r\nouter loop vertex 0 0 0 vertex 1 0 0\r\nvertex 0 1 0 endloop endfacet\r\nendsolid")
-            .triangleCount(),
-        1u);
-    EXPECT_EQ(
-        readMesh(
-            "stl",
-            "solid x\nfacet normal nan nan nan\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nend loop\nend facet\nend "
-            "solid x\n")
-            .triangleCount(),
-        1u);
+    EXPECT_EQ(readMesh("stl", "solid\r\nfacet\r\nouter loop vertex 0 0 0 vertex 1 0 0\r\nvertex 0 1 0 endloop endfacet\r\nendsolid")
+                  .triangleCount(),
+              1u);
+    EXPECT_EQ(readMesh("stl",
+                       "solid x\nfacet normal nan nan nan\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nend loop\nend facet\nend "
+                       "solid x\n")
+                  .triangleCount(),
+              1u);
 }
 
 // Whatever is cut off, the reader says so: by an error, or, after a whole triangle, by a repair.

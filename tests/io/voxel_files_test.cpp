@@ -10,8 +10,8 @@
 #include <set>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <unistd.h>
+#include <nlohmann/json.hpp>
 
 #include <vitrail/core/error.h>
 #include <vitrail/io/load.h>
@@ -112,8 +112,7 @@ const std::vector<std::string> kEndings = {".npy", ".raw", ".vox"};
 // ---- there and back ----
 
 TEST_F(VoxelFiles, RoundTripsKeepEveryBit) {
-    for (const Uint3 size :
-         {Uint3(5, 7, 33), Uint3(300, 3, 2), Uint3(1, 1, 1), Uint3(8, 8, 32), Uint3(31, 33, 9), Uint3(2, 257, 513)}) {
+    for (const Uint3 size : {Uint3(5, 7, 33), Uint3(300, 3, 2), Uint3(1, 1, 1), Uint3(8, 8, 32), Uint3(31, 33, 9), Uint3(2, 257, 513)}) {
         const VoxelBits voxels = speckled(size);
         for (const std::string& ending : kEndings) {
             for (const bool zUp : {false, true}) {
@@ -121,8 +120,7 @@ TEST_F(VoxelFiles, RoundTripsKeepEveryBit) {
                 saveVoxels(file, voxels, {.zUp = zUp});
                 const VoxelBits expected = zUp ? turned(voxels) : voxels;
                 const VoxelBits back = loadVoxels(file, expected.grid);
-                EXPECT_EQ(back.words, expected.words)
-                    << ending << " " << size.x << " x " << size.y << " x " << size.z << " zUp " << zUp;
+                EXPECT_EQ(back.words, expected.words) << ending << " " << size.x << " x " << size.y << " x " << size.z << " zUp " << zUp;
             }
         }
     }
@@ -197,8 +195,7 @@ TEST_F(VoxelFiles, NpyHasNumPysBytes) {
 std::string npy(const std::string& dictionary, const std::string& data, char version = 1) {
     std::string bytes = std::string("\x93NUMPY", 6) + version + '\0';
     const std::string header = dictionary + "\n";
-    bytes +=
-        version == 1 ? i32(static_cast<std::int64_t>(header.size())).substr(0, 2) : i32(static_cast<std::int64_t>(header.size()));
+    bytes += version == 1 ? i32(static_cast<std::int64_t>(header.size())).substr(0, 2) : i32(static_cast<std::int64_t>(header.size()));
     return bytes + header + data;
 }
 
@@ -218,8 +215,7 @@ TEST_F(VoxelFiles, NpyOfEveryWholeType) {
         EXPECT_TRUE(voxels.at(1, 0, 0) && voxels.at(0, 0, 2) && voxels.at(1, 0, 2)) << type;
     }
     // Fortran order: z fastest. Version 2 has a longer length; other tools leave out spaces and use double quotes.
-    put(folder_ / "a.npy",
-        npy("{\"descr\":\"|u1\",\"fortran_order\":True,\"shape\":(3,1,2)}", std::string("\0\0\1\0\0\0", 6), 2));
+    put(folder_ / "a.npy", npy("{\"descr\":\"|u1\",\"fortran_order\":True,\"shape\":(3,1,2)}", std::string("\0\0\1\0\0\0", 6), 2));
     const VoxelBits voxels = loadVoxels(folder_ / "a.npy", grid);
     EXPECT_EQ(voxels.occupied(), 1u);
     EXPECT_TRUE(voxels.at(0, 0, 2));
@@ -242,8 +238,7 @@ TEST_F(VoxelFiles, NpyFaults) {
     expect(npy("{'descr': [('a', '<f4')], 'fortran_order': False, 'shape': (3, 1, 2), }", six), "descr", ErrorCode::unsupported);
     expect(npy("{'descr': '|u1', 'fortran_order': False, 'shape': (6,), }", six), "1 dimensions", ErrorCode::badInput);
     expect(npy("{'descr': '|u1', 'fortran_order': False, 'shape': (2, 1, 3), }", six), "3 x 1 x 2", ErrorCode::badInput);
-    expect(npy("{'descr': '|u1', 'fortran_order': False, 'shape': (99999999999999999999, 1, 2), }", six), "shape",
-           ErrorCode::badFile);
+    expect(npy("{'descr': '|u1', 'fortran_order': False, 'shape': (99999999999999999999, 1, 2), }", six), "shape", ErrorCode::badFile);
     expect(npy("{'descr': '|u1', 'fortran_order': False, 'shape': (3, -1, 2), }", six), "shape", ErrorCode::badFile);
     expect(npy("{'descr': '|u1', 'fortran_order': False, }", six), "'shape'", ErrorCode::badFile);
     expect(npy("{'descr': '|u1", ""), "", ErrorCode::unsupported);
@@ -292,8 +287,8 @@ TEST_F(VoxelFiles, VoxOfOneModel) {
     VoxelBits voxels(Grid::box(kOrigin, kEdge, {3, 2, 4}));
     voxels.set(2, 1, 3);
     saveVoxels(folder_ / "a.vox", voxels);
-    const std::string expected = "VOX " + i32(150) + "MAIN" + i32(0) + i32(24 + 20) + "SIZE" + i32(12) + i32(0) + i32(3) +
-                                 i32(2) + i32(4) + "XYZI" + i32(8) + i32(0) + i32(1) + "\x02\x01\x03\x01";
+    const std::string expected = "VOX " + i32(150) + "MAIN" + i32(0) + i32(24 + 20) + "SIZE" + i32(12) + i32(0) + i32(3) + i32(2) + i32(4) +
+                                 "XYZI" + i32(8) + i32(0) + i32(1) + "\x02\x01\x03\x01";
     EXPECT_EQ(contents(folder_ / "a.vox"), expected);
 }
 
@@ -502,7 +497,9 @@ TEST_F(VoxelFiles, VdbOfBricksTakesTheMemoryOfItsVoxels) {
         voxels.forEach([&](Uint3 c, std::uint64_t) { zUp ? wanted.push_back({c.x, last - c.z, c.y}) : wanted.push_back({c.x, c.y, c.z}); });
         const Uint3 size = grid.size();
         const Float3 o = grid.origin();
-        const Grid there = zUp ? Grid::box(Float3(o.x, float(-(double(o.z) + double(grid.edge()) * size.z)), o.y), grid.edge(), {size.x, size.z, size.y}) : grid;
+        const Grid there =
+            zUp ? Grid::box(Float3(o.x, float(-(double(o.z) + double(grid.edge()) * size.z)), o.y), grid.edge(), {size.x, size.z, size.y})
+                : grid;
         loadVdbCells(folder_ / "a.vdb", there, [&](Uint3 least, Uint3 most) {
             for (unsigned z = least.z; z <= most.z; ++z)
                 for (unsigned y = least.y; y <= most.y; ++y)

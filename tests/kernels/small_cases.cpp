@@ -33,19 +33,23 @@ int main() {
             const test::WithPrecision set(queue, precision);
             for (const Grid& grid : {Grid::box(Float3(0), 1.0f, size), test::cameraGrids({Float3(0), Float3(size)}, Uint3(7, 6, 5))[2]}) {
                 const DepthRange range = depthRange(queue, mesh, grid, true);
-                std::printf("local slices: %llu voxels\n",
-                            static_cast<unsigned long long>(voxelize(queue, mesh, grid, Sampled{.span = true, .range = &range}).occupied()));
+                std::printf(
+                    "local slices: %llu voxels\n",
+                    static_cast<unsigned long long>(voxelize(queue, mesh, grid, Sampled{.span = true, .range = &range}).occupied()));
             }
             for (const Storage storage : {Storage::dense, Storage::bricks}) {
                 queue.setStorage(storage);
-                std::printf("per_slice, inside: %llu voxels\n", static_cast<unsigned long long>(voxelize(queue, mesh, Grid::box(Float3(0), 1.0f, size),
-                                                                                                         PerSlice{.interior = true}).occupied()));
+                std::printf("per_slice, inside: %llu voxels\n",
+                            static_cast<unsigned long long>(
+                                voxelize(queue, mesh, Grid::box(Float3(0), 1.0f, size), PerSlice{.interior = true}).occupied()));
             }
             queue.setStorage(Storage::automatic);
             for (const Method& row : methods()) {
                 if (!isVoxelizer(row)) continue;
                 const Voxelizer method = voxelizerByName(
-                    row.name, {}, row.channels ? Channel::count | Channel::normal | Channel::material | Channel::colour | Channel::orientation : Channel::none);
+                    row.name, {},
+                    row.channels ? Channel::count | Channel::normal | Channel::material | Channel::colour | Channel::orientation
+                                 : Channel::none);
                 std::vector<Grid> grids{Grid::box(Float3(0), 1.0f, size)};
                 if (row.cameraGrids) grids.push_back(test::cameraGrids({Float3(0), Float3(size)}, Uint3(7, 6, 5))[2]);
                 for (const Grid& grid : grids) {
@@ -55,8 +59,7 @@ int main() {
                                 static_cast<unsigned long long>(voxels.occupied()));
                 }
                 const Voxels voxels = voxelize(queue, row.name == "points" || row.name == "placed_points" ? longer : large, wide, method);
-                std::printf("%s, large: %llu voxels\n", voxels.report().method.c_str(),
-                            static_cast<unsigned long long>(voxels.occupied()));
+                std::printf("%s, large: %llu voxels\n", voxels.report().method.c_str(), static_cast<unsigned long long>(voxels.occupied()));
                 queue.setStorage(Storage::bricks);
                 const Voxels bricks = voxelize(queue, mesh, grids.back(), method);
                 (void)bricks.mip();
@@ -103,8 +106,9 @@ int main() {
         const Camera camera = Camera::around(scene.mesh.bounds(), 30, 20, 4, 3);
         (void)shade(queue, scene, camera, Glass{.method = Planes{.resolution = 8}, .samples = 1}).picture();
         (void)shade(queue, scene, camera, Glass{.method = Two{.resolution = 8}, .samples = 1}).picture();
-        for (const GlassMethod& method : {GlassMethod(Exact{.resolution = 8}), GlassMethod(One{}), GlassMethod(Two{.thickness = Two::Thickness::image}),
-                                          GlassMethod(Paper{.resolution = 8, .filter = true}), GlassMethod(Plane{.resolution = 8})})
+        for (const GlassMethod& method :
+             {GlassMethod(Exact{.resolution = 8}), GlassMethod(One{}), GlassMethod(Two{.thickness = Two::Thickness::image}),
+              GlassMethod(Paper{.resolution = 8, .filter = true}), GlassMethod(Plane{.resolution = 8})})
             (void)glassRays(queue, scene, camera, method);
         {
             GlassVoxels kept(queue, scene, Exact{.resolution = 8});

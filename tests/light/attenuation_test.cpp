@@ -102,7 +102,8 @@ TEST(Attenuation, OfTheAssetIsItsAnswerKeys) {
             const Float3 key = at(picture, kColumns[column], 6.0f);
             expectNear(key, glm::pow(kLeft, Float3(kThick[column])), 1e-6f, "the key itself");
             for (const float y : {3.0f, 0.0f, -3.0f, -6.0f})
-                expectNear(at(picture, kColumns[column], y), key, 2.0f / 255, "column " + std::to_string(column) + " at y " + std::to_string(y));
+                expectNear(at(picture, kColumns[column], y), key, 2.0f / 255,
+                           "column " + std::to_string(column) + " at y " + std::to_string(y));
         }
     }
 #else

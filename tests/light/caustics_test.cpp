@@ -35,8 +35,10 @@ void addStop(Scene& scene, float height, float half, float x, float z) {
     Mesh& mesh = scene.mesh;
     mesh.materials.resize(mesh.triangleCount(), 0);
     const float most = 1.5f;
-    const float boxes[4][4] = {
-        {-most, x - half, -most, most}, {x + half, most, -most, most}, {x - half, x + half, -most, z - half}, {x - half, x + half, z + half, most}};
+    const float boxes[4][4] = {{-most, x - half, -most, most},
+                               {x + half, most, -most, most},
+                               {x - half, x + half, -most, z - half},
+                               {x - half, x + half, z + half, most}};
     for (const auto& [x0, x1, z0, z1] : boxes) {
         const auto first = static_cast<std::uint32_t>(mesh.positions.size());
         for (const Float3& p : {Float3(x0, height, z0), Float3(x1, height, z0), Float3(x1, height, z1), Float3(x0, height, z1)}) {
@@ -107,7 +109,8 @@ TEST(Caustics, ASlabShiftsAndDoesNotFocus) {
     addStop(scene, 0.5f, static_cast<float>(hole), 0.3f, 0.0f);
     scene.light.toLight = Float3(0.6f, 0.8f, 0.0f);
     const CausticMap map =
-        caustics(queue(), scene, {.method = Exact{.resolution = 32}, .ground = {.height = -1.0f, .automatic = false}, .photons = 512, .texels = 512});
+        caustics(queue(), scene,
+                 {.method = Exact{.resolution = 32}, .ground = {.height = -1.0f, .automatic = false}, .photons = 512, .texels = 512});
     const Spot spot = spotOf(map);
     // From (0.3, 0.5) down to -1: 1.5 tan, less what the slab bends towards its normal.
     const double inside = sine / index, shift = (1.5 - thickness) * sine / cosine + thickness * inside / std::sqrt(1 - inside * inside);
@@ -119,7 +122,8 @@ TEST(Caustics, ASlabShiftsAndDoesNotFocus) {
     EXPECT_NEAR(spot.spreadZ, hole / std::sqrt(3.0), photon / 2 + map.edge / 10);
     // Energy: the hole as the light sees it, twice 1 - F; photons on its rim, 4 * 2 * hole long, may count or not.
     const auto f = [](double c, double ratio) {
-        const double k = std::sqrt(1 - ratio * ratio * (1 - c * c)), s = (ratio * c - k) / (ratio * c + k), p = (c - ratio * k) / (c + ratio * k);
+        const double k = std::sqrt(1 - ratio * ratio * (1 - c * c)), s = (ratio * c - k) / (ratio * c + k),
+                     p = (c - ratio * k) / (c + ratio * k);
         return 0.5 * (s * s + p * p);
     };
     const double in = 1 - f(cosine, 1 / index), out = 1 - f(std::sqrt(1 - inside * inside), index), area = 4 * hole * hole;

@@ -78,7 +78,8 @@ TEST(GlassRays, OfPlanesGoThroughThinWalls) {
     for (const float wall : {0.25f, 0.5f, 1.0f, 2.0f}) {
         const Scene scene = hollowSphere(wall, 96);
         const Camera camera = Camera::around(scene.mesh.bounds(), 33, 22, 96, 96);
-        const RayErrors errors = compareRays(glassRays(queue(), scene, camera, Planes{.resolution = 96}).ends, reference::glass(scene, camera));
+        const RayErrors errors =
+            compareRays(glassRays(queue(), scene, camera, Planes{.resolution = 96}).ends, reference::glass(scene, camera));
         EXPECT_GE(errors.correct, 0.95) << "wall of " << wall;
     }
 }
@@ -90,7 +91,8 @@ TEST(GlassRays, OfPlanesDoNotDependOnTheOrderOfTriangles) {
     for (std::size_t i = 0; i < count; ++i)
         for (std::size_t k = 0; k < 3; ++k) turned.mesh.indices[3 * i + k] = scene.mesh.indices[3 * (count - 1 - i) + k];
     const Camera camera = Camera::around(scene.mesh.bounds(), 33, 22, 96, 96);
-    const GlassRays a = glassRays(queue(), scene, camera, Planes{.resolution = 48}), b = glassRays(queue(), turned, camera, Planes{.resolution = 48});
+    const GlassRays a = glassRays(queue(), scene, camera, Planes{.resolution = 48}),
+                    b = glassRays(queue(), turned, camera, Planes{.resolution = 48});
     EXPECT_EQ(std::memcmp(a.ends.data(), b.ends.data(), a.ends.size() * sizeof(vitrail_RayEnd)), 0);
 }
 
@@ -132,7 +134,8 @@ TEST(GlassRays, FlickerNoMoreThanTheReference) {
                                                          {Two{.resolution = 96}, 3},
                                                          {Two{.thickness = Two::Thickness::image}, 2}};
         for (const auto& [method, most] : limits)
-            EXPECT_LE(turnedShare(glassRays(queue(), before, camera, method).ends, glassRays(queue(), after, camera, method).ends), most * own)
+            EXPECT_LE(turnedShare(glassRays(queue(), before, camera, method).ends, glassRays(queue(), after, camera, method).ends),
+                      most * own)
                 << (waves ? "waves" : "turned");
     }
 }

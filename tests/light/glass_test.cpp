@@ -37,8 +37,7 @@ TEST(Glass, InAFurnaceNoLightIsLostOrMade) {
         const Image image = shade(queue(), scene, Camera::around(scene.mesh.bounds(), 30, 20, 48, 48),
                                   Glass{.method = Planes{.resolution = 64}, .ground = kNoGround, .samples = 1});
         // Every ray ends in the same light, by however many reflections: F + (1 - F) = 1 up to float rounding.
-        for (const Float4& p : image.picture().pixels)
-            ASSERT_NEAR(p.y, 1.0, 1e-5) << shape;
+        for (const Float4& p : image.picture().pixels) ASSERT_NEAR(p.y, 1.0, 1e-5) << shape;
     }
 }
 
@@ -47,8 +46,9 @@ TEST(Glass, SplitRaysLoseAndMakeNoLight) {
         for (const std::uint32_t reflections : {1u, 3u, 8u}) {
             Scene scene = glassOf(makeShape(shape), 1.5f);
             furnace(scene);
-            const Image image = shade(queue(), scene, Camera::around(scene.mesh.bounds(), 30, 20, 24, 24),
-                                      Glass{.method = Exact{.resolution = 32}, .ground = kNoGround, .samples = 1, .reflections = reflections});
+            const Image image =
+                shade(queue(), scene, Camera::around(scene.mesh.bounds(), 30, 20, 24, 24),
+                      Glass{.method = Exact{.resolution = 32}, .ground = kNoGround, .samples = 1, .reflections = reflections});
             // Each split is F + (1 - F), and a ray that is not split keeps its whole weight: 1 up to float rounding.
             for (const Float4& p : image.picture().pixels) ASSERT_NEAR(p.y, 1.0, 1e-5) << shape << " " << reflections;
         }
@@ -59,7 +59,8 @@ TEST(Glass, ReflectionsInASlabAreTheSeries) {
     Scene scene = glassOf(makeShape("box"), 2.0f, static_cast<float>(kept));
     furnace(scene);
     const auto seen = [&](std::uint32_t reflections) {
-        return shade(queue(), scene, frontal(), Glass{.method = Exact{.resolution = 32}, .ground = kNoGround, .samples = 1, .reflections = reflections})
+        return shade(queue(), scene, frontal(),
+                     Glass{.method = Exact{.resolution = 32}, .ground = kNoGround, .samples = 1, .reflections = reflections})
             .picture()
             .at(16, 16)
             .x;
@@ -127,7 +128,8 @@ TEST(Glass, ASphereBendsRaysBySnellsLaw) {
             const glm::dvec3 out = refract(inside, -exitNormal, eta), mirror = d - 2.0 * glm::dot(d, n) * n;
             const Float4 got = image.picture().at(x, y);
             double error = 0;
-            for (int k = 0; k < 3; ++k) error = std::max(error, std::abs(got[k] - (f * (0.5 + 0.5 * mirror[k]) + (1 - f) * (0.5 + 0.5 * out[k]))));
+            for (int k = 0; k < 3; ++k)
+                error = std::max(error, std::abs(got[k] - (f * (0.5 + 0.5 * mirror[k]) + (1 - f) * (0.5 + 0.5 * out[k]))));
             ++all;
             good += error < 0.01;  // about one degree
             sum += error;
@@ -182,7 +184,8 @@ TEST(Shadow, OfASlabIsItsTransmittance) {
     camera.target = Float3(0.8f, -0.6f, 0.0f);
     camera.fieldOfViewDegrees = 20;
     camera.width = camera.height = 65;
-    const Image image = shade(queue(), scene, camera, Shadow{.method = Planes{.resolution = 32}, .ground = {.height = -0.6f, .automatic = false}, .samples = 1});
+    const Image image = shade(queue(), scene, camera,
+                              Shadow{.method = Planes{.resolution = 32}, .ground = {.height = -0.6f, .automatic = false}, .samples = 1});
     // Straight through: (1 - F)^2 exp(-sigma d) under the box, 1 beside it. Tolerance as for the slab above.
     // Rate: nine in ten shadowed pixels; at the slab's edges voxels hold the average of two faces.
     const double expected = (1 - f) * (1 - f) * kept;
@@ -202,7 +205,8 @@ TEST(Shadow, BehindOpaqueThingsIsDark) {
     Scene scene = glassOf(makeShape("sphere"), 1.5f);
     scene.materials[0].transmission = 0;
     scene.light.toLight = Float3(0.2f, 1, 0.1f);
-    const Image image = shade(queue(), scene, Camera::around(scene.mesh.bounds(), 0, 40, 64, 64), Shadow{.method = Planes{.resolution = 32}, .samples = 1});
+    const Image image =
+        shade(queue(), scene, Camera::around(scene.mesh.bounds(), 0, 40, 64, 64), Shadow{.method = Planes{.resolution = 32}, .samples = 1});
     std::size_t dark = 0, lit = 0;
     for (const Float4& p : image.picture().pixels) {
         dark += p.w == 1 && p.x == 0;
@@ -217,7 +221,10 @@ TEST(Glass, SaysWhenRaysLeaveAnOpenMesh) {
     Mesh open = makeShape("sphere");
     open.indices.resize(open.indices.size() / 2);
     Scene scene = glassOf(open, 1.3f);
-    EXPECT_GT(shade(queue(), scene, Camera::around(open.bounds(), 0, 30, 32, 32), Glass{.method = Planes{.resolution = 32}, .samples = 1}).report().lostRays, 0u);
+    EXPECT_GT(shade(queue(), scene, Camera::around(open.bounds(), 0, 30, 32, 32), Glass{.method = Planes{.resolution = 32}, .samples = 1})
+                  .report()
+                  .lostRays,
+              0u);
 }
 
 TEST(Glass, TwiceIsTheSameAndTakesNothingNew) {

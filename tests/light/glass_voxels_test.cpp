@@ -67,12 +67,14 @@ TEST(GlassVoxels, ABrushIsABall) {
         body.materials.push_back(painted);
         const Camera camera = around(body, 64);
         const auto truth = reference::glass(body, camera);
-        GlassVoxels brushed(queue(), cube(clearGlass(1.2f)), Exact{.resolution = 128}), poured(queue(), cube(clearGlass(1.2f)), Exact{.resolution = 128}),
+        GlassVoxels brushed(queue(), cube(clearGlass(1.2f)), Exact{.resolution = 128}),
+            poured(queue(), cube(clearGlass(1.2f)), Exact{.resolution = 128}),
             said(queue(), cube(clearGlass(1.2f)), Exact{.resolution = 128});
         const std::uint64_t cells = brushed.edit(queue(), Brush{Float3(0.0f), 0.3f}, painted);
         // The volume of the ball in cells, to the surface's third of a percent.
         EXPECT_NEAR(double(cells), 4.0 / 3 * M_PI * std::pow(0.3 * 128, 3), 0.01 * double(cells));
-        said.edit(queue(), [](const Float3& p) { return glm::dot(p, p) <= 0.09f; }, painted);
+        said.edit(
+            queue(), [](const Float3& p) { return glm::dot(p, p) <= 0.09f; }, painted);
         const Mesh region = ball;
         EXPECT_NEAR(double(poured.edit(queue(), &region, painted)), double(cells), 0.01 * double(cells));
         const auto a = glassRays(queue(), brushed, camera).ends, b = glassRays(queue(), said, camera).ends;

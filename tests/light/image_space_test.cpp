@@ -114,7 +114,8 @@ TEST(TwoSurfaces, OfASphereAreTheClosedForm) {
                 if (square > 0.5) continue;
                 const Double3 first(p.x, p.y, kRadius * std::sqrt(1 - square)), in = bent({0, 0, -1}, first / kRadius, 1 / eta);
                 const Double3 second = first + in * (2 * first.z);
-                const Double3 back = Double3(second.x, second.y, -std::sqrt(kRadius * kRadius - second.x * second.x - second.y * second.y)) / kRadius;
+                const Double3 back =
+                    Double3(second.x, second.y, -std::sqrt(kRadius * kRadius - second.x * second.x - second.y * second.y)) / kRadius;
                 const Double3 out = bent(in, -back, eta);
                 const double cosIn = glm::dot(in, back), cosOut = glm::dot(out, back);
                 // The normal is that of a place beside P2. image: half the diagonal of a pixel. voxels: half that of a cell, and as the
@@ -144,8 +145,9 @@ TEST(ImageSpace, RaysEndOnOpaqueThings) {
 }
 
 TEST(ImageSpace, InAFurnaceNoLightIsLostOrMade) {
-    for (const GlassMethod& method : {GlassMethod(One{}), GlassMethod(Two{.resolution = 32}),
-                                      GlassMethod(Two{.resolution = 32, .thickness = Two::Thickness::image}), GlassMethod(Paper{.resolution = 32})}) {
+    for (const GlassMethod& method :
+         {GlassMethod(One{}), GlassMethod(Two{.resolution = 32}), GlassMethod(Two{.resolution = 32, .thickness = Two::Thickness::image}),
+          GlassMethod(Paper{.resolution = 32})}) {
         Scene scene = glassOf(makeShape("torus"), 1.5f);
         scene.environment.zenith = scene.environment.horizon = scene.environment.nadir = Float3(1.0f);
         const Camera camera = Camera::around(scene.mesh.bounds(), 30, 20, 32, 32);

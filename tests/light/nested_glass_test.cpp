@@ -45,11 +45,13 @@ Camera frontal(float height, std::uint32_t pixels) {
 /// Share of the pixels whose ray is turned within 5 degrees: about the centre of concentric spheres index * radius * sine stays (Bouguer), and a
 /// chord is twice the cosine.
 double shareOfBouguer(const Scene& scene, double outer, double inner, const std::vector<vitrail_RayEnd>& ends, const Camera& camera) {
-    const double n1 = scene.materials[0].indexOfRefraction, n2 = scene.materials[1].indexOfRefraction, half = 0.5 * camera.orthographicHeight;
+    const double n1 = scene.materials[0].indexOfRefraction, n2 = scene.materials[1].indexOfRefraction,
+                 half = 0.5 * camera.orthographicHeight;
     std::size_t all = 0, good = 0;
     for (std::uint32_t y = 0; y < camera.height; ++y)
         for (std::uint32_t x = 0; x < camera.width; ++x) {
-            const double px = ((x + 0.5) / camera.width * 2 - 1) * half, py = (1 - (y + 0.5) / camera.height * 2) * half, b = std::hypot(px, py);
+            const double px = ((x + 0.5) / camera.width * 2 - 1) * half, py = (1 - (y + 0.5) / camera.height * 2) * half,
+                         b = std::hypot(px, py);
             if (b > 0.97 * outer) continue;  // the rim of a tessellated sphere is not the sphere's
             double turned = 2 * (std::asin(b / outer) - std::asin(b / (n1 * outer)));
             if (b < n1 * inner) {
@@ -70,14 +72,17 @@ TEST(NestedGlass, ConcentricBallsTurnRaysByBouguer) {
         float outer, inner;
         double truth, exact, planes;
     };
-    for (const Case& one : {Case{1.5f, 1.2f, 0.99, 0.99, 0.98}, Case{1.3f, 1.6f, 0.99, 0.99, 0.985}, Case{1.5f, 1.0f, 0.985, 0.985, 0.98}}) {
+    for (const Case& one :
+         {Case{1.5f, 1.2f, 0.99, 0.99, 0.98}, Case{1.3f, 1.6f, 0.99, 0.99, 0.985}, Case{1.5f, 1.0f, 0.985, 0.985, 0.98}}) {
         Scene scene;
         add(scene, "sphere", 1.0f, Float3(0), clearGlass(one.outer));
         add(scene, "sphere", 0.6f, Float3(0), clearGlass(one.inner));
         const Camera camera = frontal(1.0f, 64);
         EXPECT_GE(shareOfBouguer(scene, 0.5, 0.3, reference::glass(scene, camera), camera), one.truth) << one.inner;
-        EXPECT_GE(shareOfBouguer(scene, 0.5, 0.3, glassRays(queue(), scene, camera, Exact{.resolution = 64}).ends, camera), one.exact) << one.inner;
-        EXPECT_GE(shareOfBouguer(scene, 0.5, 0.3, glassRays(queue(), scene, camera, Planes{.resolution = 96}).ends, camera), one.planes) << one.inner;
+        EXPECT_GE(shareOfBouguer(scene, 0.5, 0.3, glassRays(queue(), scene, camera, Exact{.resolution = 64}).ends, camera), one.exact)
+            << one.inner;
+        EXPECT_GE(shareOfBouguer(scene, 0.5, 0.3, glassRays(queue(), scene, camera, Planes{.resolution = 96}).ends, camera), one.planes)
+            << one.inner;
     }
 }
 
@@ -107,7 +112,8 @@ TEST(NestedGlass, EachBodyAbsorbsByItsOwnLaw) {
     add(scene, "box", 0.5f, Float3(0), clearGlass(1.6f, Float3(1.0f, 0.3f, 0.2f)));
     const Camera camera = frontal(0.2f, 3);
     const double expected[3] = {std::pow(0.5, 0.5), std::pow(0.9, 0.5) * std::pow(0.3, 0.5), std::pow(0.2, 0.5)};
-    const vitrail_RayEnd truth = reference::glass(scene, camera)[4], exact = glassRays(queue(), scene, camera, Exact{.resolution = 32}).ends[4],
+    const vitrail_RayEnd truth = reference::glass(scene, camera)[4],
+                         exact = glassRays(queue(), scene, camera, Exact{.resolution = 32}).ends[4],
                          planes = glassRays(queue(), scene, camera, Planes{.resolution = 32}).ends[4];
     for (int k = 0; k < 3; ++k) {
         EXPECT_NEAR(truth.transmittance[k], expected[k], 1e-6);
@@ -127,14 +133,17 @@ TEST(NestedGlass, BodiesThatTouchLeaveNoAir) {
     add(scene, "box", 1.0f, Float3(0, 0, 0.5f), clearGlass(1.2f, Float3(0.5f)));
     add(scene, "box", 1.0f, Float3(0, 0, -0.5f), clearGlass(1.7f, Float3(0.3f)));
     for (const double degrees : {0.0, 15.0}) {
-        const double sine = std::sin(degrees * M_PI / 180), cosA = std::sqrt(1 - std::pow(sine / 1.2, 2)), cosB = std::sqrt(1 - std::pow(sine / 1.7, 2));
+        const double sine = std::sin(degrees * M_PI / 180), cosA = std::sqrt(1 - std::pow(sine / 1.2, 2)),
+                     cosB = std::sqrt(1 - std::pow(sine / 1.7, 2));
         Camera camera = frontal(0.1f, 3);
-        camera.eye = Float3(static_cast<float>(sine), 0.01f, static_cast<float>(std::sqrt(1 - sine * sine))) * 5.0f + Float3(0.07f, 0.03f, 0);
+        camera.eye =
+            Float3(static_cast<float>(sine), 0.01f, static_cast<float>(std::sqrt(1 - sine * sine))) * 5.0f + Float3(0.07f, 0.03f, 0);
         camera.target = Float3(0.07f, 0.08f, 0.0f);
         camera.target.y = camera.eye.y;
         const double expected = std::pow(0.5, 1 / cosA) * std::pow(0.3, 1 / cosB);
         const Double3 straight = glm::normalize(Double3(camera.target) - Double3(camera.eye));
-        for (const vitrail_RayEnd& end : {reference::glass(scene, camera)[4], glassRays(queue(), scene, camera, Exact{.resolution = 64}).ends[4]}) {
+        for (const vitrail_RayEnd& end :
+             {reference::glass(scene, camera)[4], glassRays(queue(), scene, camera, Exact{.resolution = 64}).ends[4]}) {
             EXPECT_EQ(end.events, 3u);
             EXPECT_EQ(end.fate, VITRAIL_RAY_LEFT);
             EXPECT_NEAR(end.transmittance[0], expected, 1e-5);
@@ -155,12 +164,15 @@ TEST(NestedGlass, AirInGlassIsABodyOrAHollow) {
     for (std::size_t t = 0; t < body.mesh.triangleCount(); ++t)
         if (body.mesh.materials[t] == 1) {
             std::swap(hollow.mesh.indices[3 * t], hollow.mesh.indices[3 * t + 1]);
-            for (std::size_t k = 3 * t; k < 3 * t + 3; ++k) hollow.mesh.normals[body.mesh.indices[k]] = -body.mesh.normals[body.mesh.indices[k]];
+            for (std::size_t k = 3 * t; k < 3 * t + 3; ++k)
+                hollow.mesh.normals[body.mesh.indices[k]] = -body.mesh.normals[body.mesh.indices[k]];
         }
     const Camera camera = Camera::around(body.mesh.bounds(), 33, 22, 64, 64);
     // The same numbers in the same order: the same rays.
     EXPECT_GE(compareRays(reference::glass(body, camera), reference::glass(hollow, camera)).close, 0.999);
-    EXPECT_GE(compareRays(glassRays(queue(), body, camera, Exact{.resolution = 48}).ends, glassRays(queue(), hollow, camera, Exact{.resolution = 48}).ends).close,
+    EXPECT_GE(compareRays(glassRays(queue(), body, camera, Exact{.resolution = 48}).ends,
+                          glassRays(queue(), hollow, camera, Exact{.resolution = 48}).ends)
+                  .close,
               0.999);
 }
 

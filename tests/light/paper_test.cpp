@@ -25,7 +25,8 @@ TEST(Paper, StepsFromVoxelToVoxel) {
                 const Double3 p = test::windowOf(camera, x, y);
                 if (std::max(std::abs(p.x), std::abs(p.y)) > 0.51) {
                     ASSERT_EQ(ray.fate, VITRAIL_RAY_MISSED);
-                } else if (std::max(std::abs(p.x), std::abs(p.y)) < 0.49 - (filter ? 1.0 / 16 : 0)) {  // the filter bends normals beside edges
+                } else if (std::max(std::abs(p.x), std::abs(p.y)) <
+                           0.49 - (filter ? 1.0 / 16 : 0)) {  // the filter bends normals beside edges
                     ASSERT_EQ(ray.fate, VITRAIL_RAY_LEFT);
                     ASSERT_EQ(ray.events, 2u);
                     ASSERT_LT(test::apart(ray, {0, 0, -1}), 1e-4);

@@ -31,15 +31,19 @@ Scene treeScene() {
     return scene;
 }
 
-double groundOf(const Scene& scene) { return scene.mesh.bounds().low.y - 1e-3 * glm::length(scene.mesh.bounds().high - scene.mesh.bounds().low); }
+double groundOf(const Scene& scene) {
+    return scene.mesh.bounds().low.y - 1e-3 * glm::length(scene.mesh.bounds().high - scene.mesh.bounds().low);
+}
 
 Image shadowOf(const Scene& scene, const Camera& camera, const ShadowMethod& method) {
-    return shade(queue(), scene, camera, Shadow{.method = method, .ground = {.height = static_cast<float>(groundOf(scene)), .automatic = false}});
+    return shade(queue(), scene, camera,
+                 Shadow{.method = method, .ground = {.height = static_cast<float>(groundOf(scene)), .automatic = false}});
 }
 
 void addSquare(Mesh& mesh, float height, float half, std::uint32_t material) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-    for (const Float3& p : {Float3(-half, height, -half), Float3(half, height, -half), Float3(half, height, half), Float3(-half, height, half)})
+    for (const Float3& p :
+         {Float3(-half, height, -half), Float3(half, height, -half), Float3(half, height, half), Float3(-half, height, half)})
         mesh.positions.push_back(p);
     for (const std::uint32_t k : {0u, 2u, 1u, 0u, 3u, 2u}) mesh.indices.push_back(first + k);
     mesh.materials.insert(mesh.materials.end(), 2, material);
@@ -76,7 +80,8 @@ TEST(ShadowMap, LayersMultiplyByMaterial) {
         for (int k = 0; k < 3; ++k)  // three of 0.7, one of 1 - 0.9 + 0.9 * 0.5 * colour; float rounding of exp and log
             ASSERT_NEAR(p[k], 0.7 * 0.7 * 0.7 * (0.1 + 0.45 * thick.baseColour[k]), 1e-5);
     const Image uniform = shadowOf(scene, below(scene, 8), Uniform{.resolution = 33, .slices = 64, .absorption = 0.25f});
-    for (const Float4& p : uniform.picture().pixels) ASSERT_NEAR(p.x, std::exp(-3 * 0.25), 1e-6);  // three voxels, for two squares share one
+    for (const Float4& p : uniform.picture().pixels)
+        ASSERT_NEAR(p.x, std::exp(-3 * 0.25), 1e-6);  // three voxels, for two squares share one
 }
 
 TEST(ShadowMap, BodiesAbsorbByLength) {
@@ -106,8 +111,8 @@ TEST(ShadowMap, AFlatSurfaceDoesNotShadeItself) {
     for (const float y : {1.0f, 0.3f, 0.02f}) {
         scene.light.toLight = Float3(1.0f, y, 0.4f);
         Camera camera = Camera::around(scene.mesh.bounds(), 30, 40, 64, 64);
-        const Image image =
-            shade(queue(), scene, camera, Shadow{.method = Counted{.resolution = 96, .slices = 128}, .ground = {.visible = false}, .samples = 1});
+        const Image image = shade(queue(), scene, camera,
+                                  Shadow{.method = Counted{.resolution = 96, .slices = 128}, .ground = {.visible = false}, .samples = 1});
         std::size_t seen = 0;
         for (const Float4& p : image.picture().pixels) {
             if (p.w < 1) continue;
@@ -143,7 +148,8 @@ TEST(ShadowMap, DoesNotFlickerWhileLightOrCameraMoves) {
         for (int frame = 0; frame < 5; ++frame) {
             const float turn = 0.02f * static_cast<float>(frame);
             if (light)
-                scene.light.toLight = Float3(0.5f * std::cos(turn) - 0.3f * std::sin(turn), 1.0f, 0.5f * std::sin(turn) + 0.3f * std::cos(turn));
+                scene.light.toLight =
+                    Float3(0.5f * std::cos(turn) - 0.3f * std::sin(turn), 1.0f, 0.5f * std::sin(turn) + 0.3f * std::cos(turn));
             const Camera camera = Camera::around(scene.mesh.bounds(), light ? 30.0f : 30.0f + glm::degrees(turn), 35, 96, 96);
             Picture picture = shadowOf(scene, camera, Counted{}).picture(), truth = reference::shadow(scene, camera, groundOf(scene), 2);
             if (frame != 0) {

@@ -38,7 +38,8 @@ Material wall(float colour) {
 void addSquare(Scene& scene, float z, float edge, bool away, const Material& material) {
     Mesh& mesh = scene.mesh;
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-    for (const Float2 p : {Float2(-1, -1), Float2(1, -1), Float2(1, 1), Float2(-1, 1)}) mesh.positions.emplace_back(p.x * edge / 2, p.y * edge / 2, z);
+    for (const Float2 p : {Float2(-1, -1), Float2(1, -1), Float2(1, 1), Float2(-1, 1)})
+        mesh.positions.emplace_back(p.x * edge / 2, p.y * edge / 2, z);
     for (const std::uint32_t k : {0u, 1u, 2u, 0u, 2u, 3u}) mesh.indices.push_back(first + k);
     if (away) std::swap(mesh.indices[mesh.indices.size() - 2], mesh.indices.back());
     if (away) std::swap(mesh.indices[mesh.indices.size() - 5], mesh.indices[mesh.indices.size() - 4]);
@@ -55,7 +56,8 @@ TEST(Sheets, AreMetOnce) {
             Scene scene = glassOf(makeShape("sphere"), 1.0f);
             scene.materials = {material};
             scene.environment.zenith = scene.environment.horizon = scene.environment.nadir = Float3(1.0f);
-            const Image image = shade(queue(), scene, straight(64, 1.2f), Glass{.method = method, .ground = {.visible = false}, .samples = 1});
+            const Image image =
+                shade(queue(), scene, straight(64, 1.2f), Glass{.method = method, .ground = {.visible = false}, .samples = 1});
             int seen = 0, good = 0;
             for (const Float4& p : image.picture().pixels)
                 if (p.x < 0.99f) ++seen, good += std::fabs(p.x - 0.25f) < 0.002f;
@@ -136,7 +138,8 @@ TEST(Sheets, LetPhotonsThrough) {
     scene.light.toLight = Float3(0, 1, 0);
     for (const GlassMethod& method : methods(32)) {
         const PhotonCounts counts = caustics(queue(), scene, {.method = method, .photons = 64, .texels = 64}).report.counts;
-        EXPECT_NEAR(static_cast<double>(counts.landed), 0.75 * static_cast<double>(counts.emitted), 1e-5 * static_cast<double>(counts.emitted));
+        EXPECT_NEAR(static_cast<double>(counts.landed), 0.75 * static_cast<double>(counts.emitted),
+                    1e-5 * static_cast<double>(counts.emitted));
     }
 }
 

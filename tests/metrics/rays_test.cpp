@@ -11,7 +11,10 @@ namespace {
 /// A ray turned by `degrees` from +z.
 vitrail_RayEnd turned(double degrees, std::uint32_t events = 2, std::uint32_t fate = VITRAIL_RAY_LEFT, float transmittance = 1.0f) {
     const double angle = degrees * M_PI / 180;
-    return {{static_cast<float>(std::sin(angle)), 0, static_cast<float>(std::cos(angle))}, fate, {transmittance, transmittance, transmittance}, events};
+    return {{static_cast<float>(std::sin(angle)), 0, static_cast<float>(std::cos(angle))},
+            fate,
+            {transmittance, transmittance, transmittance},
+            events};
 }
 
 TEST(CompareRays, CountsWhatIsWithinBothBounds) {
@@ -28,14 +31,28 @@ TEST(CompareRays, CountsWhatIsWithinBothBounds) {
 }
 
 TEST(CompareRays, NamesTheFault) {
-    const std::vector<vitrail_RayEnd> truth{turned(0), turned(0, 2, VITRAIL_RAY_MISSED), turned(0), turned(0), turned(0, 4), turned(0), turned(0, 4),
-                                            turned(0, 2, VITRAIL_RAY_BOUNDED), turned(0, 2, VITRAIL_RAY_OPAQUE)},
-        rays{turned(0, 4), turned(0), turned(0, 0, VITRAIL_RAY_MISSED), turned(0, 2, VITRAIL_RAY_BOUNDED), turned(20), turned(20, 4), turned(20, 4),
-             turned(0), turned(0)};
+    const std::vector<vitrail_RayEnd> truth{turned(0),
+                                            turned(0, 2, VITRAIL_RAY_MISSED),
+                                            turned(0),
+                                            turned(0),
+                                            turned(0, 4),
+                                            turned(0),
+                                            turned(0, 4),
+                                            turned(0, 2, VITRAIL_RAY_BOUNDED),
+                                            turned(0, 2, VITRAIL_RAY_OPAQUE)},
+        rays{turned(0, 4),
+             turned(0),
+             turned(0, 0, VITRAIL_RAY_MISSED),
+             turned(0, 2, VITRAIL_RAY_BOUNDED),
+             turned(20),
+             turned(20, 4),
+             turned(20, 4),
+             turned(0),
+             turned(0)};
     std::vector<RayFault> why;
     const RayErrors errors = compareRays(rays, truth, {}, &why);
-    EXPECT_EQ(why, (std::vector<RayFault>{RayFault::none, RayFault::outside, RayFault::missed, RayFault::held, RayFault::tooFew, RayFault::tooMany,
-                                          RayFault::drifted, RayFault::outside, RayFault::outside}));
+    EXPECT_EQ(why, (std::vector<RayFault>{RayFault::none, RayFault::outside, RayFault::missed, RayFault::held, RayFault::tooFew,
+                                          RayFault::tooMany, RayFault::drifted, RayFault::outside, RayFault::outside}));
     EXPECT_EQ(errors.pixels, 6u);
     EXPECT_EQ(errors.faults, (std::array<std::uint64_t, 7>{1, 3, 1, 1, 1, 1, 1}));
 }
@@ -67,7 +84,8 @@ TEST(CompareRays, MeasuresTransmittance) {
 
 // The sky is 0.95 at the horizon; half of it in one pixel of two, and nothing in the other.
 TEST(CompareRays, MeasuresThePicture) {
-    const std::vector<vitrail_RayEnd> truth{turned(0), turned(40)}, rays{turned(30, 2, VITRAIL_RAY_LEFT, 0.5f), turned(40, 2, VITRAIL_RAY_BOUNDED)};
+    const std::vector<vitrail_RayEnd> truth{turned(0), turned(40)},
+        rays{turned(30, 2, VITRAIL_RAY_LEFT, 0.5f), turned(40, 2, VITRAIL_RAY_BOUNDED)};
     const double white = 0.95 * 0.95;
     EXPECT_NEAR(compareRays(rays, truth).relativeMse, (white / 4 + white) / 2 / (white + 0.01), 1e-6);
     EXPECT_EQ(compareRays(truth, truth).relativeMse, 0);

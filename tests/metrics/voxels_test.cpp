@@ -25,8 +25,7 @@ TEST(VoxelBits, OccupiedCountsEveryWord) {
 
 TEST(CompareVoxels, CountsApartFromTies) {
     const Uint3 size(20, 10, 40);
-    const Uint3 both{1, 2, 3}, bothToo{19, 9, 39}, gone{9, 1, 35}, tieThere{4, 4, 4}, tieNot{5, 5, 5}, tieNotToo{6, 5, 5},
-        wrong{12, 8, 33};
+    const Uint3 both{1, 2, 3}, bothToo{19, 9, 39}, gone{9, 1, 35}, tieThere{4, 4, 4}, tieNot{5, 5, 5}, tieNotToo{6, 5, 5}, wrong{12, 8, 33};
     const VoxelBits certain = bitsOf(size, {both, bothToo, gone}),
                     possible = bitsOf(size, {both, bothToo, gone, tieThere, tieNot, tieNotToo});
     const VoxelDifference d = compareVoxels(bitsOf(size, {both, bothToo, tieThere, wrong}), certain, possible);

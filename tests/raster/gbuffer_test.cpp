@@ -24,7 +24,8 @@ double distanceTo(const vitrail_CameraDesc& camera, std::uint32_t x, std::uint32
     const double u = ((x + 0.5) / camera.width * 2 - 1) * camera.right.w, v = (1 - (y + 0.5) / camera.height * 2) * camera.up.w;
     const glm::dvec3 across = vec(camera.right) * u + vec(camera.up) * v;
     const bool flat = camera.eye.w > 0.5f;
-    const glm::dvec3 origin = vec(camera.eye) + (flat ? across : glm::dvec3(0.0)), direction = vec(camera.forward) + (flat ? glm::dvec3(0.0) : across);
+    const glm::dvec3 origin = vec(camera.eye) + (flat ? across : glm::dvec3(0.0)),
+                     direction = vec(camera.forward) + (flat ? glm::dvec3(0.0) : across);
     const glm::dvec3 a(mesh.positions[mesh.indices[3 * triangle]]), b(mesh.positions[mesh.indices[3 * triangle + 1]]),
         c(mesh.positions[mesh.indices[3 * triangle + 2]]);
     const glm::dvec3 p = glm::cross(direction, c - a);
@@ -64,7 +65,8 @@ TEST(GBuffer, OfFacesAwayIsThatOfTheMeshInsideOut) {
         Camera camera = Camera::around(torus.bounds(), 30, 20, 61, 47);
         camera.orthographicHeight = height;
         const std::vector<std::uint32_t> away = rasterize(queue(), DeviceMesh(queue(), torus), camera, Faces::away).triangle.read(queue()),
-                                         front = rasterize(queue(), DeviceMesh(queue(), turned), camera, Faces::away).triangle.read(queue()),
+                                         front =
+                                             rasterize(queue(), DeviceMesh(queue(), turned), camera, Faces::away).triangle.read(queue()),
                                          all = rasterize(queue(), DeviceMesh(queue(), torus), camera).triangle.read(queue());
         // A closed mesh is entered first. Rate: at its rim both may be met at one depth.
         std::size_t seen = 0, unlike = 0, same = 0;

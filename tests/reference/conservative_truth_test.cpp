@@ -55,15 +55,13 @@ bool meetsByClipping(const std::array<Double3, 3>& triangle, Double3 low, Double
 }
 
 TEST(ConservativeTruth, ATriangleWithinOneCellMarksThatCell) {
-    const Truth truth =
-        conservative(triangles({{1.2f, 2.3f, 3.4f}, {1.8f, 2.4f, 3.5f}, {1.4f, 2.7f, 3.6f}}), unitGrid({4, 4, 5}));
+    const Truth truth = conservative(triangles({{1.2f, 2.3f, 3.4f}, {1.8f, 2.4f, 3.5f}, {1.4f, 2.7f, 3.6f}}), unitGrid({4, 4, 5}));
     EXPECT_EQ(cellsOf(truth.certain), (Cells{{1, 2, 3}}));
     EXPECT_EQ(cellsOf(truth.possible), (Cells{{1, 2, 3}}));
 }
 
 TEST(ConservativeTruth, ATriangleOnAFaceIsATieOfBothCells) {
-    const Truth truth =
-        conservative(triangles({{1.2f, 1.2f, 2.0f}, {1.8f, 1.2f, 2.0f}, {1.4f, 1.8f, 2.0f}}), unitGrid({4, 4, 4}));
+    const Truth truth = conservative(triangles({{1.2f, 1.2f, 2.0f}, {1.8f, 1.2f, 2.0f}, {1.4f, 1.8f, 2.0f}}), unitGrid({4, 4, 4}));
     EXPECT_EQ(cellsOf(truth.certain), Cells{});
     EXPECT_EQ(cellsOf(truth.possible), (Cells{{1, 1, 1}, {1, 1, 2}}));
 }
@@ -78,23 +76,19 @@ TEST(ConservativeTruth, AnEdgeOnACellEdgeIsATieOfItsNeighbours) {
 TEST(ConservativeTruth, ACornerOnACellCornerIsATieOfEight) {
     const Truth truth = conservative(triangles({{2, 2, 2}, {2.6f, 2.4f, 2.5f}, {2.4f, 2.6f, 2.5f}}), unitGrid({4, 4, 4}));
     EXPECT_EQ(cellsOf(truth.certain), (Cells{{2, 2, 2}}));
-    EXPECT_EQ(cellsOf(truth.possible),
-              (Cells{{1, 1, 1}, {1, 1, 2}, {1, 2, 1}, {1, 2, 2}, {2, 1, 1}, {2, 1, 2}, {2, 2, 1}, {2, 2, 2}}));
+    EXPECT_EQ(cellsOf(truth.possible), (Cells{{1, 1, 1}, {1, 1, 2}, {1, 2, 1}, {1, 2, 2}, {2, 1, 1}, {2, 1, 2}, {2, 2, 1}, {2, 2, 2}}));
 }
 
 TEST(ConservativeTruth, AnEdgeOnTriangleMarksItsWall) {
     // In the plane y = 1.5: x from 0.5 to 2.5, z up to 0.5 + x's way. Row z = 0 and the cells that the hypotenuse crosses.
-    const Truth truth =
-        conservative(triangles({{0.5f, 1.5f, 0.5f}, {2.5f, 1.5f, 0.5f}, {2.5f, 1.5f, 2.75f}}), unitGrid({4, 4, 4}));
+    const Truth truth = conservative(triangles({{0.5f, 1.5f, 0.5f}, {2.5f, 1.5f, 0.5f}, {2.5f, 1.5f, 2.75f}}), unitGrid({4, 4, 4}));
     // hypotenuse: z = 0.5 + 1.125 (x - 0.5), so 1.0625 at x = 1 and 2.1875 at x = 2.
-    EXPECT_EQ(cellsOf(truth.certain),
-              (Cells{{0, 1, 0}, {1, 1, 0}, {2, 1, 0}, {0, 1, 1}, {1, 1, 1}, {2, 1, 1}, {1, 1, 2}, {2, 1, 2}}));
+    EXPECT_EQ(cellsOf(truth.certain), (Cells{{0, 1, 0}, {1, 1, 0}, {2, 1, 0}, {0, 1, 1}, {1, 1, 1}, {2, 1, 1}, {1, 1, 2}, {2, 1, 2}}));
     EXPECT_EQ(cellsOf(truth.possible), cellsOf(truth.certain));
 }
 
 TEST(ConservativeTruth, ASliverMarksTheCellsOfItsLine) {
-    const Truth truth =
-        conservative(triangles({{0.5f, 0.25f, 0.5f}, {7.5f, 0.75f, 0.5f}, {7.5f, 0.75f, 0.5000001f}}), unitGrid({8, 2, 2}));
+    const Truth truth = conservative(triangles({{0.5f, 0.25f, 0.5f}, {7.5f, 0.75f, 0.5f}, {7.5f, 0.75f, 0.5000001f}}), unitGrid({8, 2, 2}));
     EXPECT_EQ(truth.certain.occupied(), 8u);
     EXPECT_EQ(truth.possible.occupied(), 8u);
     for (unsigned x = 0; x < 8; ++x) EXPECT_TRUE(truth.certain.at(x, 0, 0)) << x;
@@ -195,9 +189,8 @@ TEST(ConservativeTruth, BrokenTrianglesAreSkipped) {
     mesh.positions.push_back({std::numeric_limits<float>::quiet_NaN(), 0, 0});
     mesh.positions.push_back({0, std::numeric_limits<float>::infinity(), 0});
     mesh.indices.insert(mesh.indices.end(), {0, 1, 3, 0, 1, 4, 0, 1, 77});
-    for (const VoxelBits& bits :
-         {conservative(mesh, unitGrid({4, 4, 4})).possible, reference::thin(mesh, unitGrid({4, 4, 4})).possible,
-          reference::sampled(mesh, unitGrid({4, 4, 4}))})
+    for (const VoxelBits& bits : {conservative(mesh, unitGrid({4, 4, 4})).possible, reference::thin(mesh, unitGrid({4, 4, 4})).possible,
+                                  reference::sampled(mesh, unitGrid({4, 4, 4}))})
         EXPECT_LE(bits.occupied(), 1u);
     EXPECT_EQ(conservative(Mesh(), unitGrid({4, 4, 4})).possible.occupied(), 0u);
 }
@@ -269,8 +262,7 @@ TEST(ConservativeTruth, TiesAreNoWiderThanStated) {
         // One corner within a few ties of a face, an edge or a corner of a cell.
         Float3 near(1.5f, 1.5f, 1.5f);
         for (int axis = 0; axis < 1 + round % 3; ++axis) near[axis] = 2.0f + random.in(-3e-5f, 3e-5f);
-        const std::array<Float3, 3> corner{near, near + random.point(Float3(-1), Float3(0)),
-                                           near + random.point(Float3(-1), Float3(0))};
+        const std::array<Float3, 3> corner{near, near + random.point(Float3(-1), Float3(0)), near + random.point(Float3(-1), Float3(0))};
         const Truth truth = conservative(triangles({corner[0], corner[1], corner[2]}), grid);
         const std::array<Double3, 3> v{Double3(corner[0]), Double3(corner[1]), Double3(corner[2])};
         for (unsigned z = 0; z < 4; ++z)

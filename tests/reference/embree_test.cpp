@@ -24,14 +24,14 @@ class Rays {
 public:
     Rays(const Mesh& mesh, const Grid& grid) : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
         RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-        auto* corners = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                    3 * sizeof(float), mesh.positions.size()));
+        auto* corners = static_cast<float*>(
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.positions.size()));
         for (const Float3& p : mesh.positions) {
             const Double3 v = grid.toVoxel(p);
             for (int axis = 0; axis < 3; ++axis) *corners++ = static_cast<float>(v[axis]);
         }
-        auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                                       3 * sizeof(unsigned), mesh.triangleCount()));
+        auto* indices = static_cast<unsigned*>(
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), mesh.triangleCount()));
         for (const std::uint32_t index : mesh.indices) *indices++ = index;
         rtcCommitGeometry(geometry);
         rtcAttachGeometry(scene_, geometry);

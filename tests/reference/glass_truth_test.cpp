@@ -92,7 +92,8 @@ TEST(GlassTruth, RaysAreBoundedMissOrEndOnOpaqueThings) {
     const Mesh one = makeShape("box");
     for (unsigned k = 0; k < 9; ++k) {
         const auto first = static_cast<std::uint32_t>(slabs.mesh.positions.size());
-        for (const Float3& p : one.positions) slabs.mesh.positions.push_back(p * Float3(1, 1, 0.1f) - Float3(0, 0, 0.3f * static_cast<float>(k)));
+        for (const Float3& p : one.positions)
+            slabs.mesh.positions.push_back(p * Float3(1, 1, 0.1f) - Float3(0, 0, 0.3f * static_cast<float>(k)));
         for (const std::uint32_t index : one.indices) slabs.mesh.indices.push_back(first + index);
     }
     EXPECT_EQ(reference::glass(slabs, camera)[0].fate, VITRAIL_RAY_BOUNDED);
@@ -109,7 +110,8 @@ struct Plain {
         t = std::numeric_limits<double>::infinity();
         for (std::uint32_t k = 0; k < scene.mesh.triangleCount(); ++k) {
             if (k == not_) continue;
-            const Double3 a(scene.mesh.positions[scene.mesh.indices[3 * k]]), e(Double3(scene.mesh.positions[scene.mesh.indices[3 * k + 1]]) - a),
+            const Double3 a(scene.mesh.positions[scene.mesh.indices[3 * k]]),
+                e(Double3(scene.mesh.positions[scene.mesh.indices[3 * k + 1]]) - a),
                 f(Double3(scene.mesh.positions[scene.mesh.indices[3 * k + 2]]) - a), p = glm::cross(d, f);
             const double det = glm::dot(e, p);
             if (det == 0) continue;
@@ -146,15 +148,16 @@ TEST(GlassTruth, AgreesWithAPlainTracerOnFlatNormals) {
         scene.mesh.normals.clear();
         const Camera camera = Camera::around(scene.mesh.bounds(), 33, 21, 24, 24);
         const std::vector<vitrail_RayEnd> got = reference::glass(scene, camera);
-        const Double3 eye(camera.eye), forward = glm::normalize(Double3(camera.target) - eye), right = glm::normalize(glm::cross(forward, Double3(0, 1, 0))),
-                      up = glm::cross(right, forward);
+        const Double3 eye(camera.eye), forward = glm::normalize(Double3(camera.target) - eye),
+                                       right = glm::normalize(glm::cross(forward, Double3(0, 1, 0))), up = glm::cross(right, forward);
         const double half = std::tan(camera.fieldOfViewDegrees * M_PI / 360);
         unsigned judged = 0, apart = 0;
         for (std::uint32_t y = 0; y < 24; ++y)
             for (std::uint32_t x = 0; x < 24; ++x) {
                 Double3 out;
                 unsigned events = 0;
-                if (!Plain{scene}.trace(eye, glm::normalize(forward + right * ((x + 0.5) / 12 - 1) * half + up * (1 - (y + 0.5) / 12) * half), out, events))
+                if (!Plain{scene}.trace(
+                        eye, glm::normalize(forward + right * ((x + 0.5) / 12 - 1) * half + up * (1 - (y + 0.5) / 12) * half), out, events))
                     continue;
                 const vitrail_RayEnd& end = got[y * 24 + x];
                 ++judged;

@@ -63,8 +63,7 @@ TEST(SampledTruth, TheSliceIsThatOfTheCentre) {
         EXPECT_EQ(bits.occupied(), 12u);
         for (unsigned y = 0; y < 3; ++y)
             for (unsigned x = 0; x < 4; ++x)
-                EXPECT_TRUE(bits.at(x, y, static_cast<unsigned>(float(x) + 0.5f + 3 * (float(y) + 0.5f) + 0.25f)))
-                    << x << " " << y;
+                EXPECT_TRUE(bits.at(x, y, static_cast<unsigned>(float(x) + 0.5f + 3 * (float(y) + 0.5f) + 0.25f))) << x << " " << y;
     }
 }
 
@@ -138,8 +137,7 @@ TEST(SampledTruth, ClosedSurfacesAreMetAnEvenNumberOfTimes) {
     test::Random random(22);
     for (int round = 0; round < 6; ++round) {
         const Float3 turn = random.point(Float3(0), Float3(6.28f));
-        const Mesh torus = test::closedTorus(Float3(8), 5, 2, turn, 17, 9),
-                   sphere = test::closedSphere(Float3(8), 6, turn, 13, 9);
+        const Mesh torus = test::closedTorus(Float3(8), 5, 2, turn, 17, 9), sphere = test::closedSphere(Float3(8), 6, turn, 13, 9);
         expectEven(torus, unitGrid({16, 16, 16}), 40);
         expectEven(sphere, unitGrid({16, 16, 33}), 80);
         // An edge of no exact binary length: every voxel coordinate is rounded.
@@ -280,8 +278,7 @@ TEST(SampledTruth, ClosedSurfacesAreMetAnEvenNumberOfTimesInPerspective) {
         expectEven(test::closedSphere(Float3(0.2f), 1.7f, turn, 15, 9), view({32, 33, 32}).grid(), 80);
     }
     // Around the eye: a ray meets it once before the eye and once behind, which the grid leaves out.
-    const std::vector<unsigned> count =
-        crossings(test::closedSphere({0.3f, 0.2f, -5}, 4, Float3(0.5f), 12, 8), view({12, 11, 32}).grid());
+    const std::vector<unsigned> count = crossings(test::closedSphere({0.3f, 0.2f, -5}, 4, Float3(0.5f), 12, 8), view({12, 11, 32}).grid());
     for (const unsigned c : count) EXPECT_EQ(c, 1u);
 }
 

@@ -93,8 +93,7 @@ TEST(ThinTruth, ATriangleAlongASegmentIsATie) {
     // In that plane, but beside the segment, by less and by more than the band.
     const auto beside = [](double d) {
         const auto y = float(1.5 + d);
-        return thin(triangles({{1.5f, y, 1.1f}, {1.5f, y + 0.2f, 1.1f}, {1.5f, y, 1.4f}}), unitGrid({3, 3, 3}))
-            .possible.occupied();
+        return thin(triangles({{1.5f, y, 1.1f}, {1.5f, y + 0.2f, 1.1f}, {1.5f, y, 1.4f}}), unitGrid({3, 3, 3})).possible.occupied();
     };
     EXPECT_EQ(beside(0.5 * kTie), 1u);
     EXPECT_EQ(beside(2 * kTie), 0u);
@@ -116,8 +115,7 @@ TEST(ThinTruth, TheTieBandIsKTieWide) {
     const auto end = [&](double d) {
         const auto z = float(2.0 + d);
         const Truth truth = thin(triangles({{1.4f, 1.4f, z}, {1.7f, 1.4f, z}, {1.4f, 1.7f, z}}), grid);
-        return std::tuple(truth.certain.at(1, 1, 1), truth.possible.at(1, 1, 1), truth.certain.at(1, 1, 2),
-                          truth.possible.at(1, 1, 2));
+        return std::tuple(truth.certain.at(1, 1, 1), truth.possible.at(1, 1, 1), truth.certain.at(1, 1, 2), truth.possible.at(1, 1, 2));
     };
     EXPECT_EQ(end(-2 * kTie), std::tuple(true, true, false, false));
     EXPECT_EQ(end(-0.5 * kTie), std::tuple(false, true, false, true));
@@ -129,9 +127,7 @@ TEST(ThinTruth, TheTieBandIsKTieWide) {
 TEST(ThinTruth, SharedEdgesAndCornersAreNoTies) {
     const Grid grid = unitGrid({3, 3, 3});
     const Float3 a{1.1f, 1.1f, 1.25f}, b{1.9f, 1.1f, 1.25f}, c{1.9f, 1.9f, 1.25f}, d{1.1f, 1.9f, 1.25f}, m{1.5f, 1.5f, 1.25f};
-    const auto certain = [&](std::initializer_list<Float3> corners) {
-        return thin(triangles(corners), grid).certain.at(1, 1, 1);
-    };
+    const auto certain = [&](std::initializer_list<Float3> corners) { return thin(triangles(corners), grid).certain.at(1, 1, 1); };
     EXPECT_TRUE(certain({a, b, c, a, c, d}));                    // along the diagonal
     EXPECT_TRUE(certain({a, b, m, b, c, m, c, d, m, d, a, m}));  // through the middle corner
     EXPECT_FALSE(certain({a, b, c}));                            // the diagonal is the rim
@@ -193,8 +189,7 @@ TEST(ThinTruth, KeepsAFloodOutOfClosedSurfaces) {
 TEST(ThinTruth, KeepsAFloodOutWhereEdgesRunOnCentreLines) {
     for (const float radius : {7.25f, 9.75f, 13.0f}) {
         const Grid grid = unitGrid(Uint3(33));
-        for (const Mesh& mesh :
-             {test::octahedron(Float3(16.5f), radius), test::closedSphere(Float3(16.5f), radius, Float3(0), 16, 8)}) {
+        for (const Mesh& mesh : {test::octahedron(Float3(16.5f), radius), test::closedSphere(Float3(16.5f), radius, Float3(0), 16, 8)}) {
             const Truth truth = thin(mesh, grid);
             const Watertight found = checkWatertight(truth.certain, truth.certain);
             EXPECT_GT(found.interior, 300u) << radius;

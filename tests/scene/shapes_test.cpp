@@ -106,8 +106,8 @@ TEST_P(EveryShape, RefusesWhatIsOutsideItsRanges) {
     const Shape& shape = *GetParam();
     for (const ShapeParameter& p : shape.parameters) {
         const std::string name(p.name);
-        for (const std::string& value : {std::to_string(p.least - 1), std::to_string(p.most * 2 + 1), std::string("nan"),
-                                         std::string(""), std::string("1x")}) {
+        for (const std::string& value :
+             {std::to_string(p.least - 1), std::to_string(p.most * 2 + 1), std::string("nan"), std::string(""), std::string("1x")}) {
             try {
                 makeShape(shape.name, Parameters{name + "=" + value});
                 ADD_FAILURE() << shape.name << " took " << name << "=" << value;
@@ -124,8 +124,7 @@ std::vector<const Shape*> all() {
     for (const Shape& shape : shapes()) list.push_back(&shape);
     return list;
 }
-INSTANTIATE_TEST_SUITE_P(Shapes, EveryShape, testing::ValuesIn(all()),
-                         [](const auto& info) { return std::string(info.param->name); });
+INSTANTIATE_TEST_SUITE_P(Shapes, EveryShape, testing::ValuesIn(all()), [](const auto& info) { return std::string(info.param->name); });
 
 TEST(Shapes, AreTheTenOfTheHeader) {
     std::string names;
@@ -158,8 +157,7 @@ TEST(Sphere, VolumeGenusAndCount) {
     EXPECT_EQ(mesh.triangleCount(), 2u * 40 * 20);
     EXPECT_EQ(eulerNumber(mesh), 2);
     std::vector<std::pair<double, double>> profile;
-    for (int i = 0; i <= 21; ++i)
-        profile.emplace_back(0.5 * std::cos(kPi * i / 21 - kPi / 2), 0.5 * std::sin(kPi * i / 21 - kPi / 2));
+    for (int i = 0; i <= 21; ++i) profile.emplace_back(0.5 * std::cos(kPi * i / 21 - kPi / 2), 0.5 * std::sin(kPi * i / 21 - kPi / 2));
     // Positions are rounded by half a unit in the last place, 3e-8 of the radius, and the surface is 6 volumes a radius: 2e-7.
     EXPECT_NEAR(volume(mesh), turnedVolume(profile, 40, false), 2e-7 * kPi / 6);
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) EXPECT_NEAR(glm::length(mesh.positions[i]), 0.5f, 1e-7f);
@@ -313,8 +311,7 @@ TEST(Terrain, IsASolidUnderAHeightField) {
     EXPECT_EQ(eulerNumber(flat), 2);
     EXPECT_NEAR(volume(flat), 0.1, 1e-8);
     const Mesh hills = makeShape("terrain", Parameters{"height=0.5", "cells=64"});
-    EXPECT_NEAR(hills.bounds().high.y - hills.bounds().low.y, 0.6f, 1e-6f)
-        << "the highest peak above the lowest ground is `height`";
+    EXPECT_NEAR(hills.bounds().high.y - hills.bounds().low.y, 0.6f, 1e-6f) << "the highest peak above the lowest ground is `height`";
     EXPECT_GT(volume(hills), 0.1 + 0.1);
     EXPECT_LT(volume(hills), 0.1 + 0.4);
 }

@@ -124,10 +124,9 @@ std::vector<Grid> cameraGrids(const Bounds& bounds, Uint3 size) {
     const Float3 middle = (bounds.low + bounds.high) * 0.5f;
     const float radius = glm::length(bounds.high - bounds.low) * 0.5f;
     const Float3 forward = glm::normalize(Float3(0.4f, -0.5f, -0.77f)), up(0.1f, 1, 0);
-    return {
-        OrthographicGrid{middle - forward * (2 * radius), forward, up, radius, radius * 0.7f, radius, 3 * radius, size}.grid(),
-        PerspectiveGrid{middle - forward * (2 * radius), forward, up, 0.55f, 0.5f, 0.9f * radius, 3.1f * radius, size}.grid(),
-        PerspectiveGrid{middle, forward, up, 0.8f, 0.6f, 0.1f * radius, 1.2f * radius, size}.grid()};
+    return {OrthographicGrid{middle - forward * (2 * radius), forward, up, radius, radius * 0.7f, radius, 3 * radius, size}.grid(),
+            PerspectiveGrid{middle - forward * (2 * radius), forward, up, 0.55f, 0.5f, 0.9f * radius, 3.1f * radius, size}.grid(),
+            PerspectiveGrid{middle, forward, up, 0.8f, 0.6f, 0.1f * radius, 1.2f * radius, size}.grid()};
 }
 
 }  // namespace vitrail::test

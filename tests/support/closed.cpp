@@ -25,8 +25,8 @@ Mesh closedSphere(Float3 centre, float radius, Float3 turn, unsigned around, uns
     Mesh mesh;
     const auto add = [&](double height, double angle) {
         const double ring = std::sin(height);
-        mesh.positions.push_back(
-            centre + turned(double(radius) * Double3(ring * std::cos(angle), ring * std::sin(angle), -std::cos(height)), turn));
+        mesh.positions.push_back(centre +
+                                 turned(double(radius) * Double3(ring * std::cos(angle), ring * std::sin(angle), -std::cos(height)), turn));
     };
     add(0, 0);
     for (unsigned i = 1; i < upward; ++i)
@@ -37,8 +37,7 @@ Mesh closedSphere(Float3 centre, float radius, Float3 turn, unsigned around, uns
     for (unsigned j = 0; j < around; ++j) {
         mesh.indices.insert(mesh.indices.end(), {0u, at(1, j + 1), at(1, j)});
         for (unsigned i = 1; i + 1 < upward; ++i)
-            mesh.indices.insert(mesh.indices.end(),
-                                {at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i, j), at(i + 1, j + 1), at(i + 1, j)});
+            mesh.indices.insert(mesh.indices.end(), {at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i, j), at(i + 1, j + 1), at(i + 1, j)});
         mesh.indices.insert(mesh.indices.end(), {at(upward - 1, j), at(upward - 1, j + 1), top});
     }
     return mesh;
@@ -50,14 +49,12 @@ Mesh closedTorus(Float3 centre, float radius, float tube, Float3 turn, unsigned 
         for (unsigned j = 0; j < across; ++j) {
             const double a = kTurn * i / around, b = kTurn * j / across;
             const double ring = double(radius) + double(tube) * std::cos(b);
-            mesh.positions.push_back(centre +
-                                     turned(Double3(ring * std::cos(a), ring * std::sin(a), double(tube) * std::sin(b)), turn));
+            mesh.positions.push_back(centre + turned(Double3(ring * std::cos(a), ring * std::sin(a), double(tube) * std::sin(b)), turn));
         }
     const auto at = [&](unsigned i, unsigned j) { return (i % around) * across + j % across; };
     for (unsigned i = 0; i < around; ++i)
         for (unsigned j = 0; j < across; ++j)
-            mesh.indices.insert(mesh.indices.end(),
-                                {at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+            mesh.indices.insert(mesh.indices.end(), {at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j), at(i + 1, j + 1), at(i, j + 1)});
     return mesh;
 }
 

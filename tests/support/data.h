@@ -11,5 +11,5 @@ std::filesystem::path dataFile(const std::string& relative);
 }  // namespace vitrail::test
 
 /// Ends a test with its reason when the real mesh is not at hand: real meshes are an extra, which the suite has to pass without.
-#define VITRAIL_NEEDS_DATA(path)                                                      \
+#define VITRAIL_NEEDS_DATA(path) \
     if ((path).empty()) GTEST_SKIP() << "VITRAIL_DATA names no folder with this file"

@@ -12,9 +12,7 @@ Queue& queue();
 /// Sets a queue's precision for a scope.
 class WithPrecision {
 public:
-    WithPrecision(Queue& queue, Precision precision) : queue_(queue), before_(queue.precision()) {
-        queue.setPrecision(precision);
-    }
+    WithPrecision(Queue& queue, Precision precision) : queue_(queue), before_(queue.precision()) { queue.setPrecision(precision); }
     ~WithPrecision() { queue_.setPrecision(before_); }
     WithPrecision(const WithPrecision&) = delete;
 

@@ -81,7 +81,8 @@ std::string fingerprint(Queue& queue, const Mesh& mesh) {
             }
         }
         const Grid grid = Grid::fit(bounds, 50);
-        const Voxels v = voxelize(queue, mesh, grid, Points{.channels = kChannels, .surface = Points::Surface::pnTriangles, .heights = &rough});
+        const Voxels v =
+            voxelize(queue, mesh, grid, Points{.channels = kChannels, .surface = Points::Surface::pnTriangles, .heights = &rough});
         lines += "points with heights:" + hashOf(v.host().words) + channelsOf(queue, v) + "\n";
     }
     Scene scene;

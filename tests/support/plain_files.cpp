@@ -10,8 +10,7 @@ namespace vitrail::test {
 namespace {
 
 void addFan(Mesh& mesh, const std::vector<std::uint32_t>& polygon) {
-    for (std::size_t i = 2; i < polygon.size(); ++i)
-        mesh.indices.insert(mesh.indices.end(), {polygon[0], polygon[i - 1], polygon[i]});
+    for (std::size_t i = 2; i < polygon.size(); ++i) mesh.indices.insert(mesh.indices.end(), {polygon[0], polygon[i - 1], polygon[i]});
 }
 
 void readObj(std::istream& in, Mesh& mesh) {
@@ -80,8 +79,7 @@ void readArrays(std::istream& in, Mesh& mesh) {
         }
         if (*at == '\0') break;
     }
-    for (std::size_t i = 0; i + 2 < numbers.size(); i += 3)
-        mesh.positions.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
+    for (std::size_t i = 0; i + 2 < numbers.size(); i += 3) mesh.positions.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
     std::getline(in, text, '{');
     char comma;
     for (std::uint32_t index; in >> index; in >> comma) mesh.indices.push_back(index);

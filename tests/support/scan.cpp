@@ -38,8 +38,9 @@ std::vector<std::uint32_t> scannedCounts(const Mesh& mesh, const Grid& grid, con
     std::vector<std::uint32_t> counts(grid.voxelCount(), 0);
     const Uint3 size = grid.size();
     for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
-        const VoxelBits one = scan(
-            triangles({mesh.positions[mesh.indices[3 * t]], mesh.positions[mesh.indices[3 * t + 1]], mesh.positions[mesh.indices[3 * t + 2]]}), grid);
+        const VoxelBits one = scan(triangles({mesh.positions[mesh.indices[3 * t]], mesh.positions[mesh.indices[3 * t + 1]],
+                                              mesh.positions[mesh.indices[3 * t + 2]]}),
+                                   grid);
         std::size_t cell = 0;
         for (std::uint32_t z = 0; z < size.z; ++z)
             for (std::uint32_t y = 0; y < size.y; ++y)

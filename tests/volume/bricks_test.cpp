@@ -68,23 +68,24 @@ void expectSame(const Voxels& bricks, const Voxels& dense) {
 }
 
 class EveryVoxelizerInBricks : public ::testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Methods, EveryVoxelizerInBricks, ::testing::Values("conservative", "thin", "sampled", "sliced", "per_slice", "points", "placed_points", "solid"),
+INSTANTIATE_TEST_SUITE_P(Methods, EveryVoxelizerInBricks,
+                         ::testing::Values("conservative", "thin", "sampled", "sliced", "per_slice", "points", "placed_points", "solid"),
                          [](const auto& info) { return std::string(info.param); });
 
 TEST(Bricks, AllVoxelizersAreTested) {
     for (const Method& row : methods())
         if (isVoxelizer(row)) {
-            EXPECT_TRUE(std::string(" conservative thin sampled sliced per_slice points placed_points solid solid_winding solid_slicemap ").find(" " + std::string(row.name) + " ") !=
-                        std::string::npos)
+            EXPECT_TRUE(std::string(" conservative thin sampled sliced per_slice points placed_points solid solid_winding solid_slicemap ")
+                            .find(" " + std::string(row.name) + " ") != std::string::npos)
                 << row.name;
         }
 }
 
 TEST_P(EveryVoxelizerInBricks, HoldTheSameVoxelsAndChannels) {
     const Method& row = *findMethod(GetParam());
-    const Voxelizer method =
-        voxelizerByName(row.name, {}, row.channels ? Channel::count | Channel::normal | Channel::material | Channel::colour | Channel::orientation
-                                              : Channel::none);
+    const Voxelizer method = voxelizerByName(
+        row.name, {},
+        row.channels ? Channel::count | Channel::normal | Channel::material | Channel::colour | Channel::orientation : Channel::none);
     const Uint3 size(61, 50, 131);
     // A body with room in and around it, one cut by the grid, and triangles of all sizes with one over the whole grid.
     Mesh soup = test::soup(17, 60, size, 12);

@@ -15,8 +15,7 @@ namespace {
 using test::queue;
 
 Voxels torus(Uint3 size, Channel channels = Channel::none) {
-    const Mesh mesh =
-        test::closedTorus(Float3(size) * 0.5f, float(size.x) * 0.3f, float(size.x) * 0.1f, Float3(0.5f, 1, 2), 24, 12);
+    const Mesh mesh = test::closedTorus(Float3(size) * 0.5f, float(size.x) * 0.3f, float(size.x) * 0.1f, Float3(0.5f, 1, 2), 24, 12);
     return voxelize(queue(), mesh, Grid::box(Float3(0), 1.0f, size), Conservative{.channels = channels});
 }
 
@@ -52,8 +51,8 @@ TEST(Voxels, MipHoldsCubesOfEight) {
 }
 
 TEST(Voxels, BitsOutsideTheGridAreZero) {
-    const Mesh mesh = test::triangles(
-        {{-90, -90, 4.5f}, {200, -90, 4.5f}, {-90, 200, 4.5f}, {3.3f, -90, -90}, {3.3f, 200, -90}, {3.3f, -90, 200}});
+    const Mesh mesh =
+        test::triangles({{-90, -90, 4.5f}, {200, -90, 4.5f}, {-90, 200, 4.5f}, {3.3f, -90, -90}, {3.3f, 200, -90}, {3.3f, -90, 200}});
     const Uint3 size(9, 11, 33);
     const Voxels voxels = voxelize(queue(), mesh, Grid::box(Float3(0), 1.0f, size), Conservative{});
     std::uint64_t inside = 0;
@@ -125,8 +124,7 @@ TEST(Normals, SurvivePacking) {
         worst = std::max(worst, glm::length(glm::cross(Double3(n), back)));
     }
     EXPECT_LE(std::asin(worst) * 180 / 3.14159265358979, 0.004);
-    for (const Float3 axis :
-         {Float3(1, 0, 0), Float3(-1, 0, 0), Float3(0, 1, 0), Float3(0, -1, 0), Float3(0, 0, 1), Float3(0, 0, -1)})
+    for (const Float3 axis : {Float3(1, 0, 0), Float3(-1, 0, 0), Float3(0, 1, 0), Float3(0, -1, 0), Float3(0, 0, 1), Float3(0, 0, -1)})
         EXPECT_EQ(unpackNormal(packNormal(axis)), axis);
     EXPECT_EQ(packNormal(Float3(0)), 0u);
 }

@@ -59,8 +59,8 @@ Fragments fragmentsOf(const Mesh& mesh, const Grid& grid, std::string_view metho
         }
         const Mesh one = test::triangles({p[0], p[1], p[2]});
         const VoxelBits bits = method == "conservative" ? reference::conservative(one, grid).possible
-                               : method == "thin"        ? voxelize(queue(), one, grid, Thin{}).host()
-                                                         : reference::sampled(one, grid);
+                               : method == "thin"       ? voxelize(queue(), one, grid, Thin{}).host()
+                                                        : reference::sampled(one, grid);
         for (unsigned z = 0; z < size.z; ++z)
             for (unsigned y = 0; y < size.y; ++y)
                 for (unsigned x = 0; x < size.x; ++x)
@@ -92,8 +92,7 @@ TEST_P(EveryVoxelizer, ChannelsCombineFragments) {
         EXPECT_EQ(got.materials()[index], lowest);
         // 2^-24 a component and fragment, which turn a sum that nearly vanishes.
         if (glm::length(sum) > 0.01 * count)
-            worst = std::max(
-                worst, std::acos(std::min(1.0, glm::dot(glm::normalize(sum), glm::normalize(Double3(got.normals()[index]))))));
+            worst = std::max(worst, std::acos(std::min(1.0, glm::dot(glm::normalize(sum), glm::normalize(Double3(got.normals()[index]))))));
     });
     // Octahedral coordinates of 16 bits: 0.004 degrees; a sum of length 0.01 turns by 2^-24 sqrt(3) / 0.01 rad = 0.0006 degrees.
     EXPECT_LE(worst * 180 / 3.14159265358979, 0.0046);
@@ -133,7 +132,8 @@ TEST_P(EveryVoxelizer, ColoursAndOrientationsAreMeansOverFragments) {
             std::array<double, 9> orientation{};
             double count = 0;
             for (const auto& [t, times] : fragments.at({c.x, c.y, c.z})) {
-                const Double3 a(mesh.positions[3 * t]), u = Double3(mesh.positions[3 * t + 1]) - a, v = Double3(mesh.positions[3 * t + 2]) - a;
+                const Double3 a(mesh.positions[3 * t]), u = Double3(mesh.positions[3 * t + 1]) - a,
+                                                        v = Double3(mesh.positions[3 * t + 2]) - a;
                 const Double3 n = glm::cross(u, v), offset = Double3(c) + 0.5 - a;
                 Double3 weight(0, glm::dot(glm::cross(offset, v), n), glm::dot(glm::cross(u, offset), n));
                 weight /= glm::dot(n, n);
@@ -151,8 +151,14 @@ TEST_P(EveryVoxelizer, ColoursAndOrientationsAreMeansOverFragments) {
                 count += times;
                 const Double3 m = glm::normalize(n);
                 const double y1 = std::sqrt(3 / (4 * kPi)), y2 = std::sqrt(15 / (4 * kPi));
-                const std::array<double, 9> terms{std::sqrt(1 / (4 * kPi)), y1 * m.y, y1 * m.z, y1 * m.x, y2 * m.x * m.y, y2 * m.y * m.z,
-                                                  std::sqrt(5 / (16 * kPi)) * (3 * m.z * m.z - 1), y2 * m.x * m.z,
+                const std::array<double, 9> terms{std::sqrt(1 / (4 * kPi)),
+                                                  y1 * m.y,
+                                                  y1 * m.z,
+                                                  y1 * m.x,
+                                                  y2 * m.x * m.y,
+                                                  y2 * m.y * m.z,
+                                                  std::sqrt(5 / (16 * kPi)) * (3 * m.z * m.z - 1),
+                                                  y2 * m.x * m.z,
                                                   y2 / 2 * (m.x * m.x - m.y * m.y)};
                 for (int k = 0; k < 9; ++k) orientation[k] += times * terms[k];
             }
@@ -171,9 +177,15 @@ TEST_P(EveryVoxelizer, ColoursAndOrientationsAreMeansOverFragments) {
 // Opposite normals cancel in the mean and stay in the orientation; a triangle without area has none.
 TEST(Channels, OrientationsKeepWhatNormalsCancel) {
     const Grid grid = Grid::box(Float3(0), 1.0f, Uint3(2, 1, 1));
-    const Mesh mesh = test::triangles({{0.1f, 0.1f, 0.5f}, {0.9f, 0.1f, 0.5f}, {0.1f, 0.9f, 0.5f},
-                                       {0.1f, 0.1f, 0.5f}, {0.1f, 0.9f, 0.5f}, {0.9f, 0.1f, 0.5f},
-                                       {1.2f, 0.2f, 0.2f}, {1.8f, 0.2f, 0.2f}, {1.8f, 0.2f, 0.2f}});
+    const Mesh mesh = test::triangles({{0.1f, 0.1f, 0.5f},
+                                       {0.9f, 0.1f, 0.5f},
+                                       {0.1f, 0.9f, 0.5f},
+                                       {0.1f, 0.1f, 0.5f},
+                                       {0.1f, 0.9f, 0.5f},
+                                       {0.9f, 0.1f, 0.5f},
+                                       {1.2f, 0.2f, 0.2f},
+                                       {1.8f, 0.2f, 0.2f},
+                                       {1.8f, 0.2f, 0.2f}});
     const Voxels got = voxelize(queue(), mesh, grid, Conservative{.channels = Channel::orientation});
     ASSERT_EQ(got.occupied(), 2u);
     EXPECT_NEAR(got.orientations()[0][2], 0, 2e-5);
@@ -274,8 +286,7 @@ TEST_P(EveryVoxelizer, AFullTaskListChangesNothing) {
     std::vector<Mesh> parts(3);
     Mesh whole;
     for (unsigned i = 0; i < count; ++i) {
-        const Float3 from(random.in(-5, 0), random.in(-5, 0), random.in(0, 16)),
-            to = from + Float3(length, length, random.in(-2, 2));
+        const Float3 from(random.in(-5, 0), random.in(-5, 0), random.in(0, 16)), to = from + Float3(length, length, random.in(-2, 2));
         const Float3 side = from + Float3(random.in(0, 2), 0, 0.2f);
         test::addTriangle(parts[3 * i / count], from, to, side);
         test::addTriangle(whole, from, to, side);
@@ -374,8 +385,8 @@ TEST(Methods, ConservativeCoversTheOthers) {
             const Voxels some = voxelize(queue(), one.mesh, grid, other);
             std::uint64_t beyond = 0;
             for (std::size_t w = 0; w < some.host().words.size(); ++w)
-                beyond += static_cast<std::uint64_t>(__builtin_popcount(some.host().words[w] & ~all.host().words[w] &
-                                                                        ~(truth.possible.words[w] & ~truth.certain.words[w])));
+                beyond += static_cast<std::uint64_t>(
+                    __builtin_popcount(some.host().words[w] & ~all.host().words[w] & ~(truth.possible.words[w] & ~truth.certain.words[w])));
             EXPECT_EQ(beyond, 0u) << one.name;
         }
     }

@@ -148,8 +148,7 @@ TEST(Conservative, IsTheTruthSideBySideAndAlone) {
                 low[axis] = std::floor(random.in(-1, float(size[axis]) - 2)) + (onFaces ? 0.0f : random.in(0, 0.05f));
             }
             const auto inBox = [&] {
-                return low +
-                       extent * (onFaces ? glm::floor(random.point(Float3(0), Float3(2))) : random.point(Float3(0), Float3(1)));
+                return low + extent * (onFaces ? glm::floor(random.point(Float3(0), Float3(2))) : random.point(Float3(0), Float3(1)));
             };
             const Float3 a = inBox(), b = inBox(), c = inBox();
             test::addTriangle(mesh, a, b, c);
@@ -161,11 +160,9 @@ TEST(Conservative, IsTheTruthSideBySideAndAlone) {
 TEST(Conservative, SinglePrecisionMissesNothing) {
     const test::WithPrecision single(queue(), Precision::single);
     for (const test::Case& one : test::smallShapes())
-        for (const unsigned longest : {1u, 32u, 128u})
-            expectSingleBound(one.mesh, Grid::fit(one.mesh.bounds(), longest), one.name);
+        for (const unsigned longest : {1u, 32u, 128u}) expectSingleBound(one.mesh, Grid::fit(one.mesh.bounds(), longest), one.name);
     for (const Uint3 size : {Uint3(1), Uint3(31, 33, 32), Uint3(9, 70, 100)})
-        for (const test::Case& one : test::meanMeshes(size))
-            expectSingleBound(one.mesh, Grid::box(Float3(0), 1.0f, size), one.name);
+        for (const test::Case& one : test::meanMeshes(size)) expectSingleBound(one.mesh, Grid::box(Float3(0), 1.0f, size), one.name);
 }
 
 TEST(Conservative, RefusesPerspectiveGrids) {

@@ -139,7 +139,8 @@ TEST(DepthRange, BeginsAtTheNearDepth) {
     Mesh shells = test::closedSphere(Float3(0.1f, 0.2f, -0.3f), 1, Float3(0.3f, 1.1f, 2), 24, 12);
     shells.append(test::closedSphere(Float3(0), 900, Float3(0), 24, 12));
     for (const float nearDepth : {1e-3f, 0.8f, 5.0f}) {
-        const Grid grid = PerspectiveGrid{Float3(0), Float3(0.2f, -0.1f, 1), Float3(0, 1, 0), 3, 2, nearDepth, 1e3f, Uint3(21, 17, 40)}.grid();
+        const Grid grid =
+            PerspectiveGrid{Float3(0), Float3(0.2f, -0.1f, 1), Float3(0, 1, 0), 3, 2, nearDepth, 1e3f, Uint3(21, 17, 40)}.grid();
         expectScan(shells, grid, false, "shells");
         expectScan(shells, grid, true, "shells");
     }

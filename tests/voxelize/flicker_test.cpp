@@ -48,8 +48,7 @@ std::vector<Sweep> sweeps() {
                  return mesh;
              }},
             {"turn", [](int frame) { return torus(Float3(0.3f, 1.1f, 2 + 0.0087266f * float(frame))); }},
-            {"twist",
-             [](int frame) {
+            {"twist", [](int frame) {
                  Mesh mesh = torus();
                  for (Float3& p : mesh.positions) {
                      const float angle = 0.02f * float(frame) * (p.y - kMiddle.y) / 19, c = std::cos(angle), s = std::sin(angle);
@@ -80,8 +79,9 @@ TEST(Flicker, OfSurfacesIsThatOfTheTruth) {
         const double touched = changeOf(sweep, [](const Mesh& mesh) { return reference::conservative(mesh, kGrid).certain; }).share();
         const double thin = changeOf(sweep, [](const Mesh& mesh) { return reference::thin(mesh, kGrid).certain; }).share();
         EXPECT_GT(thin, 0.01) << sweep.name;
-        const std::pair<const char*, double> limits[] = {{"conservative", kMost}, {"points", 3}, {"thin", kMost}, {"sampled", 1.8},
-                                                         {"sampled,span=1", 1.8}, {"sliced", 1.8}, {"sliced,extension=50", 1.8}};
+        const std::pair<const char*, double> limits[] = {
+            {"conservative", kMost},     {"points", 3}, {"thin", kMost}, {"sampled", 1.8}, {"sampled,span=1", 1.8}, {"sliced", 1.8},
+            {"sliced,extension=50", 1.8}};
         for (const auto& [text, most] : limits) {
             const std::string name(text);
             const std::size_t comma = name.find(',');
@@ -116,7 +116,8 @@ TEST(Flicker, OfSolidsIsTheVolumeThatTheSurfaceSweeps) {
         }
         for (const char* name : {"solid", "solid_winding"}) {
             const Voxelizer method = voxelizerByName(name);
-            const double ratio = double(changeOf(sweep, [&](const Mesh& mesh) { return voxelize(queue(), mesh, kGrid, method).host(); }).changed) / swept;
+            const double ratio =
+                double(changeOf(sweep, [&](const Mesh& mesh) { return voxelize(queue(), mesh, kGrid, method).host(); }).changed) / swept;
             RecordProperty(std::string(sweep.name) + "/" + name, std::to_string(ratio));
             EXPECT_LE(ratio, kMost) << sweep.name << " " << name;
             EXPECT_GE(ratio, 1 / kMost) << sweep.name << " " << name;

@@ -55,7 +55,8 @@ TEST(PerSlice, InteriorInBricksIsTheSame) {
 
 TEST(PerSlice, InteriorHasNoChannels) {
     try {
-        (void)voxelize(queue(), test::octahedron(Float3(0), 1), Grid::box(Float3(-1), 0.25f, Uint3(8)), PerSlice{.channels = kAll, .interior = true});
+        (void)voxelize(queue(), test::octahedron(Float3(0), 1), Grid::box(Float3(-1), 0.25f, Uint3(8)),
+                       PerSlice{.channels = kAll, .interior = true});
         FAIL() << "no error";
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::unsupported);

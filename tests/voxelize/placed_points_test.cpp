@@ -50,8 +50,8 @@ TEST(PlacedPoints, LieWhereThePlacementSays) {
     for (const Placement placement : {Placement::vertices, Placement::incentre, Placement::verticesAndCentroid, Placement::untessellated})
         for (const float reach : {0.7f, 5.0f, 150.0f}) {
             const Mesh mesh = test::soup(17, reach > 100 ? 3 : 80, size, reach);
-            const Voxels got = voxelize(queue(), mesh, grid,
-                                        PlacedPoints{.placement = placement, .safetyFactor = 1.5f, .channels = Channel::count});
+            const Voxels got =
+                voxelize(queue(), mesh, grid, PlacedPoints{.placement = placement, .safetyFactor = 1.5f, .channels = Channel::count});
             Counts counts;
             got.forEach([&](Uint3 c, std::uint64_t index) { counts[{c.x, c.y, c.z}] = got.counts()[index]; });
             EXPECT_EQ(counts, expectedCounts(mesh, grid, placement, 1.5)) << int(placement) << " reach " << reach;

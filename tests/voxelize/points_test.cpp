@@ -43,8 +43,7 @@ TEST(Tessellator, FillsTheTriangleOnce) {
         for (int& e : edges) e = 1 + static_cast<int>(random.bits() % most);
         const int inside = 1 + static_cast<int>(random.bits() % most);
         const auto pattern = test::tessellate(edges, inside);
-        ASSERT_EQ(pattern.size(), formula(edges, inside))
-            << edges[0] << " " << edges[1] << " " << edges[2] << " inside " << inside;
+        ASSERT_EQ(pattern.size(), formula(edges, inside)) << edges[0] << " " << edges[1] << " " << edges[2] << " inside " << inside;
         double area = 0;
         for (const test::MicroTriangle& t : pattern) {
             ASSERT_GT(std::abs(areaOf(t)), 0);
@@ -72,8 +71,7 @@ Counts expectedCounts(const Mesh& mesh, const Grid& grid, double safetyFactor) {
         for (int k = 0; k < 3; ++k) corners[k] = grid.toVoxel(mesh.positions[mesh.indices[3 * t + k]]);
         for (const Double3& p : test::pointsOf(corners, safetyFactor))
             if (p.x >= 0 && p.y >= 0 && p.z >= 0 && p.x <= size.x && p.y <= size.y && p.z <= size.z)
-                ++counts[{std::min(unsigned(p.x), size.x - 1), std::min(unsigned(p.y), size.y - 1),
-                          std::min(unsigned(p.z), size.z - 1)}];
+                ++counts[{std::min(unsigned(p.x), size.x - 1), std::min(unsigned(p.y), size.y - 1), std::min(unsigned(p.z), size.z - 1)}];
     }
     return counts;
 }
@@ -91,8 +89,7 @@ TEST(Points, AreTheCentroidsOfTheTessellation) {
                            Run{6, 150, 1}, Run{3, 40, 8}})
         for (const Grid& grid : {box, ortho}) {
             const Mesh mesh = test::soup(run.triangles + 7, run.triangles, size, run.reach);
-            const Voxels got =
-                voxelize(queue(), mesh, grid, Points{.safetyFactor = run.safetyFactor, .channels = Channel::count});
+            const Voxels got = voxelize(queue(), mesh, grid, Points{.safetyFactor = run.safetyFactor, .channels = Channel::count});
             EXPECT_EQ(countsOf(got), expectedCounts(mesh, grid, run.safetyFactor)) << run.reach << " gamma " << run.safetyFactor;
         }
 }
@@ -266,8 +263,8 @@ Mesh patchesOf(const Mesh& mesh, int parts, const Picture* map = nullptr) {
                                                  edge(2, 1) * (a * b * b) + edge(2, 0) * (b * b * c) + edge(0, 2) * (b * c * c)) +
                                           (e * 1.5 - v * 0.5) * (6 * a * b * c));
             if (map == nullptr) return Float3(point);
-            const Double3 normal = n[0] * (c * c) + n[1] * (a * a) + n[2] * (b * b) + middle(0, 1) * (c * a) +
-                                   middle(1, 2) * (a * b) + middle(2, 0) * (b * c);
+            const Double3 normal =
+                n[0] * (c * c) + n[1] * (a * a) + n[2] * (b * b) + middle(0, 1) * (c * a) + middle(1, 2) * (a * b) + middle(2, 0) * (b * c);
             Double2 where(0);
             for (int k = 0; k < 3; ++k) where += Double2(mesh.texcoords[mesh.indices[3 * t + k]]) * (k == 0 ? c : k == 1 ? a : b);
             return Float3(point + glm::normalize(normal) * heightAt(*map, where));
@@ -291,8 +288,8 @@ TEST(Points, OnPnTrianglesFollowTheCurvedSurface) {
         const Grid grid = Grid::fit(fine.bounds(), 48);
         const reference::Truth touched = reference::conservative(fine, grid), thin = reference::thin(fine, grid);
         for (const float gamma : {1.0f, 7.0f}) {
-            const Voxels got = voxelize(queue(), *mesh, grid,
-                                        Points{.safetyFactor = gamma, .channels = Channel::normal, .surface = Points::Surface::pnTriangles});
+            const Voxels got = voxelize(
+                queue(), *mesh, grid, Points{.safetyFactor = gamma, .channels = Channel::normal, .surface = Points::Surface::pnTriangles});
             const VoxelDifference difference = compareVoxels(got.host(), touched.certain, touched.possible);
             EXPECT_LE(difference.extraShare(), 0.0045) << gamma;
             EXPECT_LE(difference.missingShare(), 0.21 / gamma) << gamma;
@@ -336,8 +333,7 @@ double heightAt(const Picture& map, Double2 at) {
         const auto wrapped = [](double v, std::uint32_t size) { return static_cast<std::uint32_t>(v + size) % size; };
         return double(map.at(wrapped(std::floor(column), map.width), wrapped(std::floor(row), map.height)).x);
     };
-    return (pixel(x, y) * (1 - fx) + pixel(x + 1, y) * fx) * (1 - fy) +
-           (pixel(x, y + 1) * (1 - fx) + pixel(x + 1, y + 1) * fx) * fy;
+    return (pixel(x, y) * (1 - fx) + pixel(x + 1, y) * fx) * (1 - fy) + (pixel(x, y + 1) * (1 - fx) + pixel(x + 1, y + 1) * fx) * fy;
 }
 
 /// 40 x 40 in a plane, as eight triangles, texture coordinates from `low` on.
@@ -373,14 +369,12 @@ Points withHeights(const Picture& map, float safetyFactor = 1, Channel channels 
 TEST(Points, AreNotMovedByHeightsOfZero) {
     Mesh torus = withSmoothNormals(test::closedTorus(Float3(0), 5, 2, Float3(0.3f, 1.1f, 2), 12, 6));
     test::Random random(5);
-    for (std::size_t i = 0; i < torus.positions.size(); ++i)
-        torus.texcoords.push_back({random.in(-2, 2), random.in(-2, 2)});
+    for (std::size_t i = 0; i < torus.positions.size(); ++i) torus.texcoords.push_back({random.in(-2, 2), random.in(-2, 2)});
     const Grid grid = Grid::fit(torus.bounds(), 48);
     const Picture zero(5, 7);
     EXPECT_EQ(voxelize(queue(), torus, grid, withHeights(zero)).host().words, voxelize(queue(), torus, grid, onPatches).host().words);
-    EXPECT_EQ(
-        countsOf(voxelize(queue(), torus, grid, withHeights(zero, 1, Channel::count))),
-        countsOf(voxelize(queue(), torus, grid, Points{.channels = Channel::count, .surface = Points::Surface::pnTriangles})));
+    EXPECT_EQ(countsOf(voxelize(queue(), torus, grid, withHeights(zero, 1, Channel::count))),
+              countsOf(voxelize(queue(), torus, grid, Points{.channels = Channel::count, .surface = Points::Surface::pnTriangles})));
 }
 
 // Heights that binary fractions hold: the plane 2.75 higher to the bit.
@@ -425,8 +419,7 @@ TEST(Points, MovedByASineFollowIt) {
         constexpr int kParts = 256;
         const auto at = [&](int x, int y) {
             const Double2 to(double(x) / kParts, double(y) / kParts);
-            return Float3(float(2 + 40 * to.x), float(2 + 40 * to.y),
-                          float(16 + heightAt(map, Double2(double(0.2f), double(-0.7f)) + to)));
+            return Float3(float(2 + 40 * to.x), float(2 + 40 * to.y), float(16 + heightAt(map, Double2(double(0.2f), double(-0.7f)) + to)));
         };
         for (int y = 0; y < kParts; ++y)
             for (int x = 0; x < kParts; ++x) {
@@ -447,8 +440,8 @@ TEST(Points, MovedByASineFollowIt) {
 TEST(Points, MovedByHeightsOnCurvedPatchesFollowThem) {
     Mesh torus = withSmoothNormals(test::closedTorus(Float3(0), 5, 2, Float3(0.3f, 1.1f, 2), 12, 6));
     for (const Float3& p : torus.positions) torus.texcoords.push_back({p.x * 0.3f, p.y * 0.2f + p.z * 0.1f});
-    const Picture map = heightsOf(
-        40, 24, [](double u, double v) { return 0.3 * std::sin(6.283185307 * u) + 0.2 * std::cos(6.283185307 * 3 * v); });
+    const Picture map =
+        heightsOf(40, 24, [](double u, double v) { return 0.3 * std::sin(6.283185307 * u) + 0.2 * std::cos(6.283185307 * 3 * v); });
     const Mesh fine = patchesOf(torus, 60, &map);
     const Grid grid = Grid::fit(fine.bounds(), 64);
     const reference::Truth touched = reference::conservative(fine, grid), thin = reference::thin(fine, grid);

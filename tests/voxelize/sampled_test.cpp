@@ -24,9 +24,11 @@ using test::differing;
 using test::queue;
 
 void expectScan(const Mesh& mesh, const Grid& grid, const std::string& name) {
-    test::expectScan(std::array{Voxelizer(Sampled{})}, [](const Mesh& m, const Grid& g) { return reference::sampled(m, g); }, mesh, grid, name);
-    test::expectScan(std::array{Voxelizer(Sampled{.span = true})}, [](const Mesh& m, const Grid& g) { return reference::sampled(m, g, true); },
-                     mesh, grid, name + ", span");
+    test::expectScan(
+        std::array{Voxelizer(Sampled{})}, [](const Mesh& m, const Grid& g) { return reference::sampled(m, g); }, mesh, grid, name);
+    test::expectScan(
+        std::array{Voxelizer(Sampled{.span = true})}, [](const Mesh& m, const Grid& g) { return reference::sampled(m, g, true); }, mesh,
+        grid, name + ", span");
 }
 
 // Edges run through the centres of columns, but for the rounding of voxel coordinates: what decides is the last bit.
@@ -47,8 +49,7 @@ TEST(Sampled, EqualsTheScanWhereEdgesMeetCentres) {
                     const Float3 up = forward.y == 0 ? Float3(0, 1, 0) : Float3(0, 0, 1);
                     expectScan(*mesh, OrthographicGrid{middle, forward, up, half, half, -2, 2, size}.grid(),
                                "orthographic, along the axes");
-                    expectScan(*mesh,
-                               PerspectiveGrid{middle - forward * 2.0f, forward, up, half / 2, half / 2, 0.5f, 4, size}.grid(),
+                    expectScan(*mesh, PerspectiveGrid{middle - forward * 2.0f, forward, up, half / 2, half / 2, 0.5f, 4, size}.grid(),
                                "perspective, along the axes");
                 }
             }
@@ -64,8 +65,7 @@ TEST(Sampled, EqualsTheScanAcrossTheEye) {
     for (int i = 0; i < 100; ++i) {
         const Float3 middle(0, 0, random.in(1, 8));
         std::vector<Float3> rim;
-        for (const Float3 p :
-             {Float3(3, 0, 0), Float3(2, 2, 0), Float3(0, 3, 0), Float3(-3, 0, 0), Float3(-1, -2, 0), Float3(0, -3, 0)})
+        for (const Float3 p : {Float3(3, 0, 0), Float3(2, 2, 0), Float3(0, 3, 0), Float3(-3, 0, 0), Float3(-1, -2, 0), Float3(0, -3, 0)})
             rim.push_back(p * float(1 + random.bits() % 3) + Float3(0, 0, random.in(-3, 9)));
         for (std::size_t k = 0; k < rim.size(); ++k) test::addTriangle(fans, middle, rim[k], rim[(k + 1) % rim.size()]);
         for (std::size_t k = 0; k + 2 < rim.size(); ++k) test::addTriangle(fans, rim[k + 2], rim[k], rim[k + 1]);
@@ -97,8 +97,7 @@ TEST(Sampled, ClosedSurfacesAreCrossedAnEvenNumberOfTimes) {
             const Voxels voxels = voxelize(queue(), one.mesh, grid, Sampled{.channels = Channel::count});
             std::vector<std::uint64_t> column(std::size_t(grid.size().x) * grid.size().y, 0);
             const std::vector<std::uint32_t>& counts = voxels.counts();
-            voxels.forEach(
-                [&](Uint3 cell, std::uint64_t index) { column[std::size_t(cell.y) * grid.size().x + cell.x] += counts[index]; });
+            voxels.forEach([&](Uint3 cell, std::uint64_t index) { column[std::size_t(cell.y) * grid.size().x + cell.x] += counts[index]; });
             EXPECT_EQ(std::count_if(column.begin(), column.end(), [](std::uint64_t n) { return n % 2 != 0; }), 0) << one.name;
             EXPECT_GT(std::count_if(column.begin(), column.end(), [](std::uint64_t n) { return n != 0; }), 20) << one.name;
         }
@@ -110,7 +109,8 @@ TEST(Sampled, CountsTrianglesInAVoxel) {
     const Mesh mesh = test::soup(11, 200, grid.size(), 12);
     for (const bool span : {false, true})
         test::expectCounts(voxelize(queue(), mesh, grid, Sampled{.span = span, .channels = Channel::count}),
-                           test::scannedCounts(mesh, grid, [&](const Mesh& m, const Grid& g) { return reference::sampled(m, g, span); }), 1000);
+                           test::scannedCounts(mesh, grid, [&](const Mesh& m, const Grid& g) { return reference::sampled(m, g, span); }),
+                           1000);
 }
 
 // z = 2 x + 0.25 over a level row, z = x + 2 y over a square: runs of two slices and of three, exact in doubles.
@@ -188,7 +188,8 @@ TEST(Sampled, SpansStandTheTurnThroughEdgeOn) {
     for (const double degrees : {0.0, 30.0, 60.0, 75.0, 85.0, 88.0, 92.0, 105.0, 150.0}) {
         const double angle = degrees / 180 * std::numbers::pi, width = std::abs(40 * std::cos(angle));
         const Float3 middle(24.1f, 23.8f, 24.3f), x(20.0f, 0, 0), y(0, float(20 * std::cos(angle)), float(20 * std::sin(angle)));
-        const Mesh square = test::triangles({middle - x - y, middle + x - y, middle + x + y, middle - x - y, middle + x + y, middle - x + y});
+        const Mesh square =
+            test::triangles({middle - x - y, middle + x - y, middle + x + y, middle - x - y, middle + x + y, middle - x + y});
         const reference::Truth truth = reference::thin(square, grid);
         const auto missing = [&](const Sampled& method) {
             return compareVoxels(voxelize(queue(), square, grid, method).host(), truth.certain, truth.possible).missingShare();
@@ -204,8 +205,7 @@ TEST(Sampled, SpansStandTheTurnThroughEdgeOn) {
 // within 2^-22 of the grid's size from an edge or a face. On a level plane at a slice's middle that is none.
 TEST(Sampled, SinglePrecisionScansToo) {
     const test::WithPrecision single(queue(), Precision::single);
-    const Mesh square =
-        test::triangles({{0, 0, 4.5f}, {64, 0, 4.5f}, {64, 64, 4.5f}, {0, 0, 4.5f}, {64, 64, 4.5f}, {0, 64, 4.5f}});
+    const Mesh square = test::triangles({{0, 0, 4.5f}, {64, 0, 4.5f}, {64, 64, 4.5f}, {0, 0, 4.5f}, {64, 64, 4.5f}, {0, 64, 4.5f}});
     const Grid grid = Grid::box(Float3(0), 1.0f, {64, 64, 9});
     const Voxels got = voxelize(queue(), square, grid, Sampled{});
     EXPECT_TRUE(got.report().singlePrecision);

@@ -24,8 +24,7 @@ constexpr Channel kAll = Channel::count | Channel::normal | Channel::material;
 /// Voxels of `a` that `b` lacks.
 std::uint64_t beyond(const VoxelBits& a, const VoxelBits& b) {
     std::uint64_t bits = 0;
-    for (std::size_t w = 0; w < a.words.size(); ++w)
-        bits += static_cast<std::uint64_t>(__builtin_popcount(a.words[w] & ~b.words[w]));
+    for (std::size_t w = 0; w < a.words.size(); ++w) bits += static_cast<std::uint64_t>(__builtin_popcount(a.words[w] & ~b.words[w]));
     return bits;
 }
 
@@ -141,7 +140,8 @@ TEST(Sliced, CountsTrianglesInOverlappingSlabs) {
     const Grid grid = Grid::box(Float3(0), 1.0f, {20, 17, 40});
     const Mesh mesh = test::soup(11, 200, grid.size(), 12);
     const Voxels got = voxelize(queue(), mesh, grid, Sliced{.extension = 25, .channels = Channel::count});
-    test::expectCounts(got, test::scannedCounts(mesh, grid, [](const Mesh& m, const Grid& g) { return extended(fineScan(m, g, 4), g, 4, 1); }), 1000);
+    test::expectCounts(
+        got, test::scannedCounts(mesh, grid, [](const Mesh& m, const Grid& g) { return extended(fineScan(m, g, 4), g, 4, 1); }), 1000);
     EXPECT_EQ(got.report().options, "extension=25");
 }
 

@@ -152,8 +152,7 @@ void expectForms(const VoxelBits& front, const VoxelBits& back, const std::strin
             const std::vector<bool> expected = reference::slicemapInner(f, b);
             for (unsigned z = 0; z < size.z; ++z) wrongBits += got.at(x, y, z) != expected[z];
             if (size.z % 8 == 0)
-                wrongCounts +=
-                    inner[std::size_t(y) * size.x + x] != std::uint32_t(std::count(expected.begin(), expected.end(), true));
+                wrongCounts += inner[std::size_t(y) * size.x + x] != std::uint32_t(std::count(expected.begin(), expected.end(), true));
         }
     EXPECT_EQ(wrongBits, 0u) << name;
     EXPECT_EQ(wrongCounts, 0u) << name;
@@ -207,8 +206,7 @@ TEST(SolidSlicemap, IsParityWithTheSurface) {
     const Mesh ball = test::closedSphere(Float3(0), 10, Float3(0.1f, 0.2f, 0.3f), 32, 16), box = makeShape("box");
     for (const Mesh& mesh : {ball, box}) {
         const Grid grid = Grid::fit(mesh.bounds(), 50);
-        const VoxelBits solid = voxelize(queue(), mesh, grid, Solid{}).host(),
-                        surface = voxelize(queue(), mesh, grid, Sampled{}).host(),
+        const VoxelBits solid = voxelize(queue(), mesh, grid, Solid{}).host(), surface = voxelize(queue(), mesh, grid, Sampled{}).host(),
                         got = voxelize(queue(), mesh, grid, SolidSlicemap{}).host();
         VoxelBits both(grid);
         for (std::size_t w = 0; w < both.words.size(); ++w) both.words[w] = solid.words[w] | surface.words[w];

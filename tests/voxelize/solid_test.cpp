@@ -26,7 +26,8 @@ using test::queue;
 
 void expectScan(const Mesh& mesh, const Grid& grid, const std::string& name) {
     const VoxelBits scan = reference::solid(mesh, grid);
-    EXPECT_EQ(differing(voxelize(queue(), mesh, grid, Solid{}).host(), scan), 0u) << name << " on " << grid.text() << ", " << scan.occupied();
+    EXPECT_EQ(differing(voxelize(queue(), mesh, grid, Solid{}).host(), scan), 0u)
+        << name << " on " << grid.text() << ", " << scan.occupied();
 }
 
 TEST(Solid, EqualsTheScan) {
@@ -61,7 +62,8 @@ TEST(Solid, HasTheVolumeOfTheMesh) {
         for (const unsigned longest : {32u, 64u, 128u}) {
             const Grid grid = Grid::fit(one.mesh.bounds(), longest);
             const Voxels solid = voxelize(queue(), one.mesh, grid, Solid{});
-            const double cell = std::pow(double(grid.edge()), 3), surface = double(voxelize(queue(), one.mesh, grid, Conservative{}).occupied());
+            const double cell = std::pow(double(grid.edge()), 3),
+                         surface = double(voxelize(queue(), one.mesh, grid, Conservative{}).occupied());
             EXPECT_EQ(solid.report().openColumns, 0u) << one.name;
             EXPECT_LE(std::abs(double(solid.occupied()) - std::abs(report.signedVolume) / cell), surface) << one.name << " " << longest;
         }
@@ -94,7 +96,8 @@ TEST(Solid, HasTheVolumeOfTheMeshInGeneralPoses) {
             const Grid grid = Grid::fit(mesh.bounds(), 64);
             const double cells = std::abs(inspect(mesh).signedVolume) / std::pow(double(grid.edge()), 3),
                          surface = double(voxelize(queue(), mesh, grid, Conservative{}).occupied());
-            EXPECT_LE(std::abs(double(voxelize(queue(), mesh, grid, Solid{}).occupied()) - cells), 3 * std::sqrt(surface)) << one.name << " " << pose;
+            EXPECT_LE(std::abs(double(voxelize(queue(), mesh, grid, Solid{}).occupied()) - cells), 3 * std::sqrt(surface))
+                << one.name << " " << pose;
         }
     }
 }

@@ -67,8 +67,7 @@ void expectWinding(const Mesh& mesh, const Grid& grid, const std::string& name) 
 
 // The oracle's own oracle: no columns, strips or parts.
 TEST(SolidWinding, OracleIsTheSumOverAllTriangles) {
-    for (const Mesh& mesh :
-         {bowl(), makeShape("terrain", std::vector<std::string>{"cells=6"}), test::soup(81, 20, Uint3(12), 8)}) {
+    for (const Mesh& mesh : {bowl(), makeShape("terrain", std::vector<std::string>{"cells=6"}), test::soup(81, 20, Uint3(12), 8)}) {
         std::vector<Grid> grids = test::cameraGrids(mesh.bounds(), Uint3(9, 8, 7));
         grids.push_back(Grid::fit(mesh.bounds(), 12, 0.2));
         for (const Grid& grid : grids) {
@@ -81,8 +80,7 @@ TEST(SolidWinding, OracleIsTheSumOverAllTriangles) {
                         const double w = std::abs(reference::windingNumber(mesh, grid.toWorld(Double3(x, y, z) + 0.5)));
                         const bool tie = std::abs(w - 0.5) < 0.003;
                         tied += tie;
-                        wrong += !tie && (truth.inside.certain.at(x, y, z) != (w > 0.5) ||
-                                          truth.inside.possible.at(x, y, z) != (w > 0.5));
+                        wrong += !tie && (truth.inside.certain.at(x, y, z) != (w > 0.5) || truth.inside.possible.at(x, y, z) != (w > 0.5));
                         wrong += std::abs(std::abs(w - std::round(w)) - 0.25) > 1e-9 &&
                                  truth.guessed.at(x, y, z) != (std::abs(w - std::round(w)) > 0.25);
                     }
@@ -119,8 +117,7 @@ TEST(SolidWinding, EqualsSolidWhereTheMeshIsClosed) {
             grids.push_back(Grid::fit(mesh.bounds(), 64));
             for (const Grid& grid : grids) {
                 const Voxels got = voxelize(queue(), mesh, grid, SolidWinding{});
-                EXPECT_EQ(differing(got.host(), voxelize(queue(), mesh, grid, Solid{}).host()), 0u)
-                    << one.name << " on " << grid.text();
+                EXPECT_EQ(differing(got.host(), voxelize(queue(), mesh, grid, Solid{}).host()), 0u) << one.name << " on " << grid.text();
                 EXPECT_EQ(got.report().guessedCells, 0u);
             }
         }
@@ -154,8 +151,7 @@ TEST(SolidWinding, KeepsClosedPartsAmongOpenOnes) {
     Mesh both = room;
     both.append(ball);
     const Grid grid = Grid::fit(both.bounds(), 40);
-    const VoxelBits alone = voxelize(queue(), ball, grid, Solid{}).host(),
-                    got = voxelize(queue(), both, grid, SolidWinding{}).host();
+    const VoxelBits alone = voxelize(queue(), ball, grid, Solid{}).host(), got = voxelize(queue(), both, grid, SolidWinding{}).host();
     std::uint64_t lost = 0;
     for (std::size_t w = 0; w < got.words.size(); ++w)
         lost += static_cast<std::uint64_t>(__builtin_popcount(alone.words[w] & ~got.words[w]));
@@ -173,8 +169,7 @@ TEST(SolidWinding, FillsABowl) {
                  parity = voxelize(queue(), open, grid, Solid{});
     EXPECT_GT(parity.report().openColumns, 500u);
     std::uint64_t beyond = 0, lost = 0;
-    whole.forEach(
-        [&](Uint3 c, std::uint64_t) { lost += grid.toWorld(Double3(c) + 0.5).z < 0 && !full.host().at(c.x, c.y, c.z); });
+    whole.forEach([&](Uint3 c, std::uint64_t) { lost += grid.toWorld(Double3(c) + 0.5).z < 0 && !full.host().at(c.x, c.y, c.z); });
     full.forEach([&](Uint3 c, std::uint64_t) { beyond += !whole.host().at(c.x, c.y, c.z); });
     EXPECT_EQ(beyond, 0u);
     EXPECT_EQ(lost, 0u);
@@ -259,8 +254,7 @@ TEST(SolidWinding, IsRightOnTheClosedPartsOfACathedral) {
         const MeshReport report = inspect(part);
         if (!report.closed() || report.inverted()) continue;
         const Grid grid = Grid::fit(part.bounds(), 60);
-        const VoxelBits alone = voxelize(queue(), part, grid, Solid{}).host(),
-                        got = voxelize(queue(), mesh, grid, SolidWinding{}).host();
+        const VoxelBits alone = voxelize(queue(), part, grid, Solid{}).host(), got = voxelize(queue(), mesh, grid, SolidWinding{}).host();
         std::uint64_t lost = 0;
         for (std::size_t w = 0; w < got.words.size(); ++w)
             lost += static_cast<std::uint64_t>(__builtin_popcount(alone.words[w] & ~got.words[w]));

@@ -19,20 +19,20 @@ struct DeviceInfo {
     std::uint64_t globalBytes = 0;     ///< as the driver states it; on PoCL it follows the machine's free memory at start
     std::uint64_t maxBufferBytes = 0;  ///< largest single buffer
     bool cpu = false;
-    bool fp64 = false;                 ///< doubles decide voxels; else the single-precision path and a note in the report
+    bool fp64 = false;  ///< doubles decide voxels; else the single-precision path and a note in the report
     bool int64Atomics = false;
 };
 
 /// What the library did since the device was made. A second call of the same size changes none of the first three.
 struct Counters {
-    std::uint64_t allocations = 0;     ///< device buffers created
-    std::uint64_t programBuilds = 0;   ///< programs compiled from source
+    std::uint64_t allocations = 0;    ///< device buffers created
+    std::uint64_t programBuilds = 0;  ///< programs compiled from source
     std::uint64_t kernelsCreated = 0;
-    std::uint64_t programLoads = 0;    ///< programs loaded from the disk cache
+    std::uint64_t programLoads = 0;  ///< programs loaded from the disk cache
     std::uint64_t uploads = 0, uploadedBytes = 0;
     std::uint64_t readBacks = 0, readBackBytes = 0;
     std::uint64_t launches = 0;
-    std::uint64_t deviceBytes = 0;     ///< allocated now, pools included
+    std::uint64_t deviceBytes = 0;  ///< allocated now, pools included
     std::uint64_t peakDeviceBytes = 0;
 };
 

@@ -8,15 +8,15 @@ namespace vitrail {
 inline namespace v0 {
 
 enum class ErrorCode {
-    badOption,    ///< an option outside its stated range, or options that exclude each other
-    badInput,     ///< a mesh, scene or array that cannot be used (index out of range, NaN vertex, nothing in it)
-    badFile,      ///< a file that cannot be read, parsed or written
-    unsupported,  ///< a well-formed request or file that this build or device does not serve
-    outOfMemory,  ///< over the memory limit or over what the device allows; thrown before memory is taken
-    noDevice,     ///< no OpenCL platform or no matching device
-    deviceFailed, ///< an OpenCL call failed; the message has its name and code
-    buildFailed,  ///< a kernel did not compile; the message has the log
-    cancelled,    ///< the progress callback returned false; outputs are unchanged, the queue stays usable
+    badOption,     ///< an option outside its stated range, or options that exclude each other
+    badInput,      ///< a mesh, scene or array that cannot be used (index out of range, NaN vertex, nothing in it)
+    badFile,       ///< a file that cannot be read, parsed or written
+    unsupported,   ///< a well-formed request or file that this build or device does not serve
+    outOfMemory,   ///< over the memory limit or over what the device allows; thrown before memory is taken
+    noDevice,      ///< no OpenCL platform or no matching device
+    deviceFailed,  ///< an OpenCL call failed; the message has its name and code
+    buildFailed,   ///< a kernel did not compile; the message has the log
+    cancelled,     ///< the progress callback returned false; outputs are unchanged, the queue stays usable
 };
 
 /// The code's name as written above, for reports: "badOption".

@@ -45,7 +45,7 @@ public:
 
     Workspace& workspace();
     DeviceInfo deviceInfo() const;
-    Counters counters() const;  ///< of the device
+    Counters counters() const;          ///< of the device
     std::uint64_t memoryLimit() const;  ///< of the device
 
     void setPrecision(Precision precision);

@@ -13,8 +13,8 @@ using Float4 = glm::vec<4, float, glm::packed_highp>;
 using Double3 = glm::vec<3, double, glm::packed_highp>;
 using Uint3 = glm::vec<3, std::uint32_t, glm::packed_highp>;
 
-static_assert(sizeof(Float2) == 8 && sizeof(Float3) == 12 && sizeof(Float4) == 16 && sizeof(Uint3) == 12 &&
-                  alignof(Float4) == 4 && sizeof(Double3) == 24,
+static_assert(sizeof(Float2) == 8 && sizeof(Float3) == 12 && sizeof(Float4) == 16 && sizeof(Uint3) == 12 && alignof(Float4) == 4 &&
+                  sizeof(Double3) == 24,
               "vitrail's public vectors are packed");
 
 /// An axis-aligned box in world space. Empty (low > high) by default.

@@ -18,8 +18,8 @@ struct OrthographicGrid {
 
 struct PerspectiveGrid {
     Float3 eye, forward, up;
-    float tanHalfX, tanHalfY;     ///< tangents of half the field of view, above 0
-    float nearDepth, farDepth;    ///< world units, above 0
+    float tanHalfX, tanHalfY;   ///< tangents of half the field of view, above 0
+    float nearDepth, farDepth;  ///< world units, above 0
     Uint3 size;
     Grid grid() const;
 };

@@ -4,10 +4,10 @@
 #include "types.h"
 
 typedef struct vitrail_CameraDesc {
-    vitrail_float4 eye;      // world; w = 1 orthographic, 0 perspective
-    vitrail_float4 right;    // unit; w = half width of the window: world units, or a tangent at distance 1
-    vitrail_float4 up;       // unit; w = half height
-    vitrail_float4 forward;  // unit; w = 0
+    vitrail_float4 eye;          // world; w = 1 orthographic, 0 perspective
+    vitrail_float4 right;        // unit; w = half width of the window: world units, or a tangent at distance 1
+    vitrail_float4 up;           // unit; w = half height
+    vitrail_float4 forward;      // unit; w = 0
     vitrail_uint width, height;  // pixels; pixel (0, 0) is at the top left, rays go through pixel centres
     vitrail_uint padding0, padding1;
 } vitrail_CameraDesc;

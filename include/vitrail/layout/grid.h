@@ -15,8 +15,8 @@ typedef struct vitrail_GridDesc {
     // box: x = y = z = cell edge. orthographic: x, y = half width and height of the window, z = near, w = far depth.
     // perspective: x, y = tangents of the half angles, z = near, w = far depth.
     vitrail_float4 extent;
-    vitrail_uint4 size;  // voxels along x, y, z; w = 32-bit words of a column: ceil(z / 32)
-    vitrail_uint kind;   // VITRAIL_GRID_*
+    vitrail_uint4 size;           // voxels along x, y, z; w = 32-bit words of a column: ceil(z / 32)
+    vitrail_uint kind;            // VITRAIL_GRID_*
     vitrail_uint tilesX, tilesY;  // tiles of 8 columns along x and y: ceil(size / 8)
     vitrail_uint padding;
 } vitrail_GridDesc;

@@ -13,8 +13,8 @@
 #define VITRAIL_MOST_EVENTS 16  // refractions and reflections of a ray
 
 typedef struct vitrail_RayEnd {
-    float direction[3];  // unit, world; of the last stretch
-    vitrail_uint fate;   // VITRAIL_RAY_*
+    float direction[3];      // unit, world; of the last stretch
+    vitrail_uint fate;       // VITRAIL_RAY_*
     float transmittance[3];  // linear RGB: Beer-Lambert and the surfaces' colours, without Fresnel
     vitrail_uint events;
 } vitrail_RayEnd;
@@ -79,7 +79,9 @@ typedef double vitrail_optic;
 
 #define VITRAIL_GRAZING ((vitrail_optic)1e-3f)  // least cosine between a ray and a boundary
 
-static inline vitrail_optic vitrail_dot(const vitrail_optic a[3], const vitrail_optic b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static inline vitrail_optic vitrail_dot(const vitrail_optic a[3], const vitrail_optic b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 static inline void vitrail_normalize(vitrail_optic a[3]) {
     const vitrail_optic length = VITRAIL_SQRT(vitrail_dot(a, a));

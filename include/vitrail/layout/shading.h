@@ -9,18 +9,18 @@ typedef struct vitrail_MaterialDesc {
     vitrail_float4 surface;     // roughness; 1 thin walled, 0 a body; alpha; below which alpha nothing is there, or -1: alpha is coverage
     vitrail_float4 mean;        // of the textures, for surfaces met where texture coordinates are not known: linear RGB, transmission
     vitrail_float4 textureU, textureV;  // x u + y v + z: where in the textures a point lies
-    vitrail_uint4 base;         // texture of colour and alpha: its first texel, width (0: none), height; w = 0
-    vitrail_uint4 detail;       // texture that multiplies transmission (red) and roughness (green)
+    vitrail_uint4 base;                 // texture of colour and alpha: its first texel, width (0: none), height; w = 0
+    vitrail_uint4 detail;               // texture that multiplies transmission (red) and roughness (green)
 } vitrail_MaterialDesc;
 VITRAIL_CHECK_SIZE(vitrail_MaterialDesc, 128);
 
 typedef struct vitrail_LightDesc {
-    vitrail_float4 toLight;     // unit direction from the scene to the light, world; w = 0
-    vitrail_float4 irradiance;  // linear RGB on a surface that faces the light; w = 0
-    vitrail_float4 ambient;     // irradiance of the environment on a surface that faces up, over pi; w = its intensity
+    vitrail_float4 toLight;                 // unit direction from the scene to the light, world; w = 0
+    vitrail_float4 irradiance;              // linear RGB on a surface that faces the light; w = 0
+    vitrail_float4 ambient;                 // irradiance of the environment on a surface that faces up, over pi; w = its intensity
     vitrail_float4 zenith, horizon, nadir;  // environment without a map, linear RGB; w = 0
-    vitrail_float4 ground;      // receiver, a horizontal disc: centre x, height y, centre z; w = radius, 0: none
-    vitrail_float4 groundLight; // its two albedos: x, y; z = edge of its tiles, world units; w = environment's turn about +y, radians
+    vitrail_float4 ground;                  // receiver, a horizontal disc: centre x, height y, centre z; w = radius, 0: none
+    vitrail_float4 groundLight;  // its two albedos: x, y; z = edge of its tiles, world units; w = environment's turn about +y, radians
     vitrail_uint mapWidth, mapHeight;  // environment map, latitude-longitude; 0: none
     vitrail_uint padding0, padding1;
 } vitrail_LightDesc;

@@ -58,7 +58,7 @@ struct One {
 struct Two {
     static constexpr std::string_view name = "two";
     enum class Thickness : std::uint32_t { voxels, image };
-    float resolution = 256.0f;                    ///< voxels along the longest axis, 8 to 2048; not of image
+    float resolution = 256.0f;  ///< voxels along the longest axis, 8 to 2048; not of image
     Thickness thickness = Thickness::voxels;
 
     template <class Self, class Visit>
@@ -77,8 +77,8 @@ struct Two {
 struct Paper {
     static constexpr std::string_view name = "paper";
     float resolution = 256.0f;  ///< voxels along the longest axis, 8 to 2048
-    float angle = 20.0f;        ///< degrees, 0 to 180: heuristic 1, refract again only where the normal differs by more from the last; 0: always
-    float extension = 5.0f;     ///< percent of a slice, 0 to 100: heuristic 2, as of Sliced
+    float angle = 20.0f;  ///< degrees, 0 to 180: heuristic 1, refract again only where the normal differs by more from the last; 0: always
+    float extension = 5.0f;  ///< percent of a slice, 0 to 100: heuristic 2, as of Sliced
     bool filter = false;
 
     template <class Self, class Visit>

@@ -12,7 +12,7 @@ inline namespace v0 {
 
 struct ImageReport : CallReport {
     std::string effect, method;
-    Uint3 grid{0};                  ///< of the voxels that were marched
+    Uint3 grid{0};  ///< of the voxels that were marched
     std::uint64_t triangles = 0, occupied = 0;
     std::uint64_t rays = 0;         ///< camera samples
     std::uint64_t lostRays = 0;     ///< samples that left the grid inside glass: an open mesh or a missed voxel

@@ -30,7 +30,7 @@ struct Uniform {
     static constexpr std::string_view name = "uniform";
     float resolution = 512.0f;  ///< as of Counted
     float slices = 256.0f;
-    float absorption = 0.5f;    ///< of a voxel, 0 to 100: it lets exp(-absorption) through
+    float absorption = 0.5f;  ///< of a voxel, 0 to 100: it lets exp(-absorption) through
 
     template <class Self, class Visit>
     static void visitOptions(Self& self, Visit&& visit) {

@@ -8,8 +8,8 @@ inline namespace v0 {
 /// A horizontal disc under the scene that receives its shadow.
 struct Ground {
     bool visible = true;
-    float height = 0.0f;     ///< world y; used when `automatic` is off
-    bool automatic = true;   ///< just below the mesh
+    float height = 0.0f;    ///< world y; used when `automatic` is off
+    bool automatic = true;  ///< just below the mesh
 };
 
 /// The brightest part of an environment map as a directional light: direction of its peak after a blur of some degrees and the irradiance of

@@ -8,10 +8,10 @@ namespace vitrail {
 inline namespace v0 {
 
 struct Watertight {
-    std::uint64_t rays = 0;       ///< axis-parallel rays, both directions, that meet the thin truth, ties apart
-    std::uint64_t leaks = 0;      ///< of these, rays whose first voxel lies more than one cell beyond the truth's first, or nowhere
-    std::uint64_t interior = 0;   ///< cells that a flood through face neighbours from outside cannot reach in the thin truth and its ties
-    std::uint64_t flooded = 0;    ///< of these, cells that it reaches in the result
+    std::uint64_t rays = 0;      ///< axis-parallel rays, both directions, that meet the thin truth, ties apart
+    std::uint64_t leaks = 0;     ///< of these, rays whose first voxel lies more than one cell beyond the truth's first, or nowhere
+    std::uint64_t interior = 0;  ///< cells that a flood through face neighbours from outside cannot reach in the thin truth and its ties
+    std::uint64_t flooded = 0;   ///< of these, cells that it reaches in the result
     bool holds() const { return leaks == 0 && flooded == 0; }
 };
 

@@ -14,7 +14,8 @@ namespace reference {
 /// length inside those of transmission above 0.5, which must be closed; no Fresnel reflection. The point's own triangle does not count.
 /// Alpha is the share of the positions that see a surface. Points are those of the mesh and of a horizontal disc of six diagonals' radius
 /// under its centre, at `groundHeight` (infinity: none). Embree (robust) finds triangles; points, lengths and products are doubles. All cores.
-Picture shadow(const Scene& scene, const Camera& camera, double groundHeight = std::numeric_limits<double>::infinity(), unsigned samples = 1);
+Picture shadow(const Scene& scene, const Camera& camera, double groundHeight = std::numeric_limits<double>::infinity(),
+               unsigned samples = 1);
 
 }  // namespace reference
 }  // namespace v0

@@ -36,37 +36,33 @@ struct Strided {
 
 /// Triangles in the caller's arrays, which must stay alive during the call only.
 struct MeshView {
-    Strided<Float3> positions;               ///< world space, any unit
-    std::span<const std::uint32_t> indices;  ///< three a triangle; empty: positions 3t, 3t+1, 3t+2
+    Strided<Float3> positions;                 ///< world space, any unit
+    std::span<const std::uint32_t> indices;    ///< three a triangle; empty: positions 3t, 3t+1, 3t+2
     std::span<const std::uint32_t> materials;  ///< one a triangle; empty: all 0
-    Strided<Float3> normals;                 ///< shading normals, one a vertex, need not be unit; empty: face normals
-    Strided<Float2> texcoords;               ///< one a vertex, or empty
-    Strided<Float4> colours;                 ///< linear RGBA, one a vertex, or empty: white
-    const Picture* texture = nullptr;        ///< multiplies the colours at texcoords, (0, 0) its upper left corner, repeated; or none
+    Strided<Float3> normals;                   ///< shading normals, one a vertex, need not be unit; empty: face normals
+    Strided<Float2> texcoords;                 ///< one a vertex, or empty
+    Strided<Float4> colours;                   ///< linear RGBA, one a vertex, or empty: white
+    const Picture* texture = nullptr;          ///< multiplies the colours at texcoords, (0, 0) its upper left corner, repeated; or none
 
     std::size_t triangleCount() const { return (indices.empty() ? positions.count : indices.size()) / 3; }
-    std::uint32_t index(std::size_t corner) const {
-        return indices.empty() ? static_cast<std::uint32_t>(corner) : indices[corner];
-    }
+    std::uint32_t index(std::size_t corner) const { return indices.empty() ? static_cast<std::uint32_t>(corner) : indices[corner]; }
     Bounds bounds() const;  ///< of all vertices
 };
 
 /// What a mesh is; numbers, not errors. Counted on vertices merged at bit-equal positions (-0 equals +0). Triangles that use a
 /// vertex twice have no edges to count.
 struct MeshReport {
-    std::uint64_t vertices = 0;          ///< different positions, used by triangles or not
+    std::uint64_t vertices = 0;  ///< different positions, used by triangles or not
     std::uint64_t triangles = 0;
-    std::uint64_t openEdges = 0;         ///< edges of one triangle
-    std::uint64_t nonManifoldEdges = 0;  ///< edges of three or more triangles
-    std::uint64_t flippedEdges = 0;      ///< edges whose two triangles run them in the same direction
+    std::uint64_t openEdges = 0;            ///< edges of one triangle
+    std::uint64_t nonManifoldEdges = 0;     ///< edges of three or more triangles
+    std::uint64_t flippedEdges = 0;         ///< edges whose two triangles run them in the same direction
     std::uint64_t degenerateTriangles = 0;  ///< of zero area in double arithmetic, or with a vertex missing or not finite
     std::uint64_t duplicatedTriangles = 0;  ///< same three different vertices as an earlier one, in any order
-    std::uint64_t components = 0;        ///< connected through shared vertices
-    double signedVolume = 0;             ///< by the divergence theorem; negative: inverted winding; meaningless if open
+    std::uint64_t components = 0;           ///< connected through shared vertices
+    double signedVolume = 0;                ///< by the divergence theorem; negative: inverted winding; meaningless if open
 
-    bool closed() const {
-        return triangles > degenerateTriangles && openEdges == 0 && nonManifoldEdges == 0 && flippedEdges == 0;
-    }
+    bool closed() const { return triangles > degenerateTriangles && openEdges == 0 && nonManifoldEdges == 0 && flippedEdges == 0; }
     bool inverted() const { return closed() && signedVolume < 0; }
     /// One line for people: "open (223 edges), 5 components".
     std::string summary() const;
@@ -80,8 +76,8 @@ struct Mesh {
     std::vector<std::uint32_t> materials;
     std::vector<Float3> normals;
     std::vector<Float2> texcoords;
-    std::vector<Float4> colours;             ///< linear RGBA, one a vertex, or empty
-    std::vector<std::string> repairs;        ///< what a reader had to mend or leave out, one sentence each
+    std::vector<Float4> colours;       ///< linear RGBA, one a vertex, or empty
+    std::vector<std::string> repairs;  ///< what a reader had to mend or leave out, one sentence each
 
     std::size_t triangleCount() const { return view().triangleCount(); }
     Bounds bounds() const { return view().bounds(); }

@@ -18,8 +18,8 @@ struct Camera {
     Float3 eye{0.0f, 0.0f, 3.0f};
     Float3 target{0.0f};
     Float3 up{0.0f, 1.0f, 0.0f};
-    float fieldOfViewDegrees = 30.0f;  ///< vertical, 1 to 170; of the perspective camera
-    float orthographicHeight = 0.0f;   ///< above 0: orthographic, the window's height in scene units
+    float fieldOfViewDegrees = 30.0f;         ///< vertical, 1 to 170; of the perspective camera
+    float orthographicHeight = 0.0f;          ///< above 0: orthographic, the window's height in scene units
     std::uint32_t width = 512, height = 512;  ///< pixels
 
     /// The camera for a bare mesh (measures.md): the bounding sphere of `bounds` fills the picture's height at 30 degrees;
@@ -36,10 +36,10 @@ struct DirectionalLight {
 /// Light from everywhere: a latitude-longitude map, +y up, column 0 at -x turning through -z... to +x as glTF viewers do, or a
 /// plain gradient where there is no map.
 struct Environment {
-    Picture map;                        ///< 2:1 linear RGB; empty: the gradient
+    Picture map;  ///< 2:1 linear RGB; empty: the gradient
     Float3 zenith{0.45f, 0.62f, 0.95f}, horizon{0.95f, 0.95f, 0.95f}, nadir{0.35f, 0.32f, 0.30f};
     float intensity = 1.0f;
-    float yawDegrees = 0.0f;            ///< turned about +y
+    float yawDegrees = 0.0f;  ///< turned about +y
 };
 
 struct Scene {
@@ -51,7 +51,7 @@ struct Scene {
     std::optional<Camera> camera;
     DirectionalLight light;
     Environment environment;
-    std::optional<Skin> skin;           ///< of the mesh's vertices, where the file has a skin or animations of nodes; `mesh` is at rest
+    std::optional<Skin> skin;  ///< of the mesh's vertices, where the file has a skin or animations of nodes; `mesh` is at rest
 };
 
 /// The standard glass of a bare mesh: index of refraction 1.5, lightly tinted.

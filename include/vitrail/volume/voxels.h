@@ -38,9 +38,7 @@ enum class Channel : std::uint32_t { none = 0, count = 1, normal = 2, material =
 constexpr Channel operator|(Channel a, Channel b) {
     return static_cast<Channel>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
 }
-constexpr bool has(Channel set, Channel one) {
-    return (static_cast<std::uint32_t>(set) & static_cast<std::uint32_t>(one)) != 0;
-}
+constexpr bool has(Channel set, Channel one) { return (static_cast<std::uint32_t>(set) & static_cast<std::uint32_t>(one)) != 0; }
 
 /// Coefficients of the real orthonormal spherical harmonics Y00; Y1-1, Y10, Y11; Y2-2, Y2-1, Y20, Y21, Y22 (without the phase of Condon and
 /// Shortley): of y, z, x; xy, yz, 3zz - 1, xz, xx - yy.
@@ -59,7 +57,7 @@ struct VoxelBits {
 
 struct VoxelReport : CallReport {
     std::string method;
-    std::string options;                    ///< "safetyFactor=1", as the command line takes them; empty if there are none
+    std::string options;  ///< "safetyFactor=1", as the command line takes them; empty if there are none
     std::uint64_t triangles = 0;
     std::uint64_t degenerateTriangles = 0;  ///< of zero area; they mark the cells of their segment or point where the method can
     std::uint64_t skippedTriangles = 0;     ///< with an index out of range or a vertex that is not finite: marked nothing
@@ -69,7 +67,7 @@ struct VoxelReport : CallReport {
     std::uint64_t clippedFragments = 0;     ///< with a DepthRange: that lie, wholly or in part, beyond the range of their column
     Uint3 grid{0};
     std::uint64_t occupied = 0;
-    std::uint64_t bricks = 0;               ///< tiles of 8 x 8 x 32 cells that memory was taken for; 0: all of the grid's
+    std::uint64_t bricks = 0;  ///< tiles of 8 x 8 x 32 cells that memory was taken for; 0: all of the grid's
 };
 
 namespace detail {
@@ -95,19 +93,20 @@ public:
     const Buffer<std::uint32_t>& brickTiles() const;  ///< the tile of each brick, [0] unused; empty: bits() is dense
     const Buffer<std::uint32_t>& rank() const;        ///< waits (its total must reach the host)
     const Buffer<std::uint8_t>& mip() const;
-    const Buffer<std::uint32_t>& countBuffer() const;     ///< Error (badOption) if the channel was not asked for; likewise below
+    const Buffer<std::uint32_t>& countBuffer() const;  ///< Error (badOption) if the channel was not asked for; likewise below
     const Buffer<std::uint32_t>& normalBuffer() const;
     const Buffer<std::uint32_t>& materialBuffer() const;
-    const Buffer<std::uint32_t>& colourBuffer() const;       ///< two a voxel: red and green, blue and alpha, the first in the low half
-    const Buffer<std::uint32_t>& orientationBuffer() const;  ///< four a voxel, two parts each, the first in the low half; the very first -32768: none
+    const Buffer<std::uint32_t>& colourBuffer() const;  ///< two a voxel: red and green, blue and alpha, the first in the low half
+    const Buffer<std::uint32_t>& orientationBuffer()
+        const;  ///< four a voxel, two parts each, the first in the low half; the very first -32768: none
 
     // On the host.
     std::uint64_t occupied() const;
-    const VoxelBits& host() const;                        ///< dense; Error (outOfMemory) where that passes the memory limit: forEach() goes on
-    const std::vector<std::uint32_t>& counts() const;     ///< by index of the occupied voxel
+    const VoxelBits& host() const;                     ///< dense; Error (outOfMemory) where that passes the memory limit: forEach() goes on
+    const std::vector<std::uint32_t>& counts() const;  ///< by index of the occupied voxel
     const std::vector<std::uint32_t>& materials() const;
-    const std::vector<Float3>& normals() const;           ///< unit
-    const std::vector<Float4>& colours() const;           ///< linear RGBA
+    const std::vector<Float3>& normals() const;  ///< unit
+    const std::vector<Float4>& colours() const;  ///< linear RGBA
     const std::vector<Harmonics>& orientations() const;
 
     /// Calls f(Uint3 cell, std::uint64_t index) for every occupied voxel, in index order.
@@ -118,7 +117,8 @@ public:
         std::uint64_t index = 0;
         for (std::uint64_t w = 0; w < words.size(); ++w) {
             for (std::uint32_t rest = words[w]; rest != 0; rest &= rest - 1) {
-                const std::uint64_t brick = w / VITRAIL_WORDS_PER_TILE, tile = tiles.empty() ? brick : tiles[brick], column = tile / d.size.w;
+                const std::uint64_t brick = w / VITRAIL_WORDS_PER_TILE, tile = tiles.empty() ? brick : tiles[brick],
+                                    column = tile / d.size.w;
                 const auto inTile = static_cast<std::uint32_t>(w % VITRAIL_WORDS_PER_TILE);
                 f(Uint3(static_cast<std::uint32_t>(column % d.tilesX) * 8 + (inTile & 7),
                         static_cast<std::uint32_t>(column / d.tilesX) * 8 + (inTile >> 3),

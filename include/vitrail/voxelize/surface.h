@@ -8,9 +8,9 @@ namespace vitrail {
 inline namespace v0 {
 
 struct SurfaceVoxels {
-    Voxels voxels;                           ///< with channels count and material
-    Buffer<vitrail_SurfaceVoxel> surface;    ///< by index of the occupied voxel
-    Buffer<vitrail_SurfaceVoxel> planes;     ///< of voxels that have more than one; one unused record where none has
+    Voxels voxels;                         ///< with channels count and material
+    Buffer<vitrail_SurfaceVoxel> surface;  ///< by index of the occupied voxel
+    Buffer<vitrail_SurfaceVoxel> planes;   ///< of voxels that have more than one; one unused record where none has
 };
 
 /// Waits for sizes: as voxelizeLists, and once more (planes). Needs a box grid and a mesh on the device with shading normals; face normals where
