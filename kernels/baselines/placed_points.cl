@@ -52,6 +52,7 @@ kernel void placed_points_mark(const vitrail_GridDesc grid, float safetyFactor, 
     s.whole = placement == PLACED_WHOLE;
     MARK_EACH(triangle, block, {
         points_attributes(&s, positions, indices, vertexCount, triangle);
-        points_triangle(&s, safetyFactor, positions, indices, vertexCount, triangle, block, block < 0 && !rank, tasks, taskCapacity, status);
+        points_triangle(&s, safetyFactor, positions, indices, vertexCount, triangle, block, block < 0 && !rank, tasks, taskCapacity,
+                        status);
     })
 }

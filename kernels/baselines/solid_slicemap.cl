@@ -37,8 +37,8 @@ kernel void solid_slicemap_mark(const vitrail_GridDesc grid, global uint* back, 
         live &= samples_eight(&grid, positions, indices, vertexCount, triangles, false);
         for (int lane = 0; lane < LANES; ++lane)
             if (lanes_int_at(&live, lane))
-                solid_slicemap_triangle(&grid, back, mirrored != 0u, positions, indices, vertexCount, triangles[lane], blocks[lane], words, tasks,
-                                        taskCapacity, status);
+                solid_slicemap_triangle(&grid, back, mirrored != 0u, positions, indices, vertexCount, triangles[lane], blocks[lane], words,
+                                        tasks, taskCapacity, status);
     })
 }
 
@@ -73,7 +73,8 @@ kernel void solid_slicemap_evaluate(const vitrail_GridDesc grid, global uint* bi
             global uint8* word = (global uint8*)(bits + column + (size_t)w * VITRAIL_WORDS_PER_TILE);
             const uint8 f = *word, b = *(global const uint8*)(back + column + (size_t)w * VITRAIL_WORDS_PER_TILE);
             const uint slices = min(grid.size.z - w * 32u, 32u);
-            const uint8 filled = f | b, empty = ~filled & (0xffffffffu >> (32u - slices)), onlyBack = b & ~f, both = f & b, resolved = filled & -filled & onlyBack;
+            const uint8 filled = f | b, empty = ~filled & (0xffffffffu >> (32u - slices)), onlyBack = b & ~f, both = f & b,
+                        resolved = filled & -filled & onlyBack;
             uint8 after, insideOver, pendingOver;
             const uint8 front = f & ~b, afterFront = slicemap_runs(empty, front << 1 | inside, &after, &insideOver);
             const uint8 unclear = slicemap_runs(empty, both << 1 | pending, &after, &pendingOver);

@@ -4,9 +4,7 @@
 #pragma OPENCL FP_CONTRACT OFF
 
 // Row r of a joint's matrix times the vertex' weight for it.
-INLINE float4 skin_row(global const float* matrices, uint joint, uint r, float weight) {
-    return vload4(3 * joint + r, matrices) * weight;
-}
+INLINE float4 skin_row(global const float* matrices, uint joint, uint r, float weight) { return vload4(3 * joint + r, matrices) * weight; }
 
 // `joints` and `weights`: four a vertex; `matrices`: three rows of four a joint. `normals` null: there are none.
 kernel void skin_vertices(global const float* rest, global const float* restNormals, global const ushort* joints,

@@ -24,10 +24,10 @@ typedef struct {
     // number within it, triangle); cursor[0]: how many places were handed out, cursor[1]: how many there are.
     global uint* list;
     global uint* cursor;
-    global const uint* materials;    // of triangles
-    global const float* colours;     // of vertices, four each
-    global const float* texcoords;   // of vertices, two each
-    global const float* texture;     // four a pixel
+    global const uint* materials;   // of triangles
+    global const float* colours;    // of vertices, four each
+    global const float* texcoords;  // of vertices, two each
+    global const float* texture;    // four a pixel
     uint textureWidth, textureHeight;
 } Channels;
 
@@ -36,7 +36,7 @@ typedef struct {
     const Channels* channels;  // null: bits are set
     long normal[3], orientation[ORIENTATION_SUMS];
     uint material, triangle;
-    uint* places;  // of fragments: the next, and past the last that this work-item has
+    uint* places;           // of fragments: the next, and past the last that this work-item has
     Point corner, dual[2];  // weight k + 1 of a point of the plane is the product of dual[k] with its offset from the corner
     float4 colour[3];
     float2 texcoord[3];

@@ -5,16 +5,16 @@
 #include "lib/mark.cl"
 #pragma OPENCL FP_CONTRACT OFF
 
-#define COLUMN_SMALL 8  // columns along x and y of a triangle that is done in blocks of four by two
-#define COLUMN_LANES 4  // of one that is done beside seven others, a lane each
+#define COLUMN_SMALL 8    // columns along x and y of a triangle that is done in blocks of four by two
+#define COLUMN_LANES 4    // of one that is done beside seven others, a lane each
 #define COLUMN_NEAR 2048  // tiles whose words, half a MiB, stay in a core's cache
 
 // Where the cells of one triangle go.
 typedef struct {
     const vitrail_GridDesc* grid;
-    Bits bits;                 // unless there are channels
+    Bits bits;  // unless there are channels
     BitsQueue* queue;
-    bool near;                 // words are in the cache: an atomic costs less than to look first
+    bool near;  // words are in the cache: an atomic costs less than to look first
     const Channels* channels;
     uint triangle;
     Share share;
@@ -53,8 +53,8 @@ INLINE void column_mark_row(const Mark* mark, int x, int y, int8 first, int8 end
     }
     for (int lane = 0; lane < LANES; ++lane)
         for (int z = lanes_int_at(&first, lane); z < lanes_int_at(&end, lane); ++z)
-            channels_add(&mark->share, bits_word(mark->grid, mark->channels->bricks, (uint)(x + lane), (uint)y, (uint)z), (uint)(x + lane), (uint)y,
-                         (uint)z, 1u);
+            channels_add(&mark->share, bits_word(mark->grid, mark->channels->bricks, (uint)(x + lane), (uint)y, (uint)z), (uint)(x + lane),
+                         (uint)y, (uint)z, 1u);
 }
 
 // Marks the cells of the triangle in `lane` in columns [xLeast, xMost] x [yLeast, yMost].
@@ -175,8 +175,7 @@ INLINE void column_lanes(const Runs* runs, int8 small, const Mark* mark) {
 
 // One of eight triangles, or one block of it when it is big (block >= 0).
 INLINE void column_triangle(const Runs* runs, int lane, global const float* positions, global const uint* indices, uint vertexCount,
-                                  int block, Mark* mark, global uint2* tasks, uint taskCapacity,
-                                  global uint* status) {
+                            int block, Mark* mark, global uint2* tasks, uint taskCapacity, global uint* status) {
     const int state = lanes_int_at(&runs->state, lane);
     if (state == 0) return;
     if ((state & (RUN_SKIPPED | RUN_OUTSIDE | RUN_DEGENERATE)) && block < 0 && !mark->channels)
@@ -184,7 +183,8 @@ INLINE void column_triangle(const Runs* runs, int lane, global const float* posi
     if (!(state & RUN_INSIDE)) return;
     int xLeast = lanes_int_at(&runs->first[0], lane), xMost = lanes_int_at(&runs->last[0], lane);
     int yLeast = lanes_int_at(&runs->first[1], lane), yMost = lanes_int_at(&runs->last[1], lane);
-    const int width = xMost - xLeast + 1, depth = yMost - yLeast + 1, height = lanes_int_at(&runs->last[2], lane) + 1 - lanes_int_at(&runs->first[2], lane);
+    const int width = xMost - xLeast + 1, depth = yMost - yLeast + 1,
+              height = lanes_int_at(&runs->last[2], lane) + 1 - lanes_int_at(&runs->first[2], lane);
     if (!mark->channels && width <= COLUMN_SMALL && depth <= COLUMN_SMALL && height <= 31) {
         column_blocks(runs, lane, xLeast, xMost, yLeast, yMost, mark);
         return;
@@ -204,31 +204,31 @@ INLINE int8 column_small(const Runs* runs) {
            (runs->last[2] - runs->first[2] < 31) & (runs->state == RUN_INSIDE);
 }
 
-#define COLUMN_MARK(thin)                                                                                                            \
-    const Channels channels = MARK_CHANNELS;                                                                                         \
-    const Bits bits = MARK_BITS;                                                                                                     \
-    BitsQueue queue;                                                                                                                 \
-    queue.count = 0u;                                                                                                                \
-    Mark mark;                                                                                                                       \
-    mark.grid = &grid;                                                                                                               \
-    mark.bits = bits;                                                                                                                \
-    mark.near = !bricks && (ulong)grid.tilesX * ((grid.size.y + 7u) / 8u) * grid.size.w <= COLUMN_NEAR;                              \
-    mark.queue = &queue;                                                                                                             \
-    mark.channels = rank ? &channels : 0;                                                                                            \
-    uint places[2] = {0u, 0u};                                                                                                       \
-    mark.share.places = places;                                                                                                      \
-    MARK_EIGHTS(triangles, blocks, live, {                                                                                           \
-        Runs runs;                                                                                                                   \
-        run_setup(thin, &grid, positions, indices, vertexCount, triangles, live, &runs);                                             \
-        const int8 small = rank || groups ? (int8)(0) : column_small(&runs);                                                         \
-        if (lanes_int_least(small) != 0) column_lanes(&runs, small, &mark);                                                          \
-        for (int lane = 0; lane < LANES; ++lane) {                                                                                   \
-            if (lanes_int_at(&small, lane) != 0) continue;                                                                           \
-            mark.triangle = triangles[lane];                                                                                         \
-            column_triangle(&runs, lane, positions, indices, vertexCount, blocks[lane], &mark, tasks, taskCapacity, status);         \
-        }                                                                                                                            \
-    })                                                                                                                               \
-    channels_close(&channels, places);                                                                                               \
+#define COLUMN_MARK(thin)                                                                                                    \
+    const Channels channels = MARK_CHANNELS;                                                                                 \
+    const Bits bits = MARK_BITS;                                                                                             \
+    BitsQueue queue;                                                                                                         \
+    queue.count = 0u;                                                                                                        \
+    Mark mark;                                                                                                               \
+    mark.grid = &grid;                                                                                                       \
+    mark.bits = bits;                                                                                                        \
+    mark.near = !bricks && (ulong)grid.tilesX * ((grid.size.y + 7u) / 8u) * grid.size.w <= COLUMN_NEAR;                      \
+    mark.queue = &queue;                                                                                                     \
+    mark.channels = rank ? &channels : 0;                                                                                    \
+    uint places[2] = {0u, 0u};                                                                                               \
+    mark.share.places = places;                                                                                              \
+    MARK_EIGHTS(triangles, blocks, live, {                                                                                   \
+        Runs runs;                                                                                                           \
+        run_setup(thin, &grid, positions, indices, vertexCount, triangles, live, &runs);                                     \
+        const int8 small = rank || groups ? (int8)(0) : column_small(&runs);                                                 \
+        if (lanes_int_least(small) != 0) column_lanes(&runs, small, &mark);                                                  \
+        for (int lane = 0; lane < LANES; ++lane) {                                                                           \
+            if (lanes_int_at(&small, lane) != 0) continue;                                                                   \
+            mark.triangle = triangles[lane];                                                                                 \
+            column_triangle(&runs, lane, positions, indices, vertexCount, blocks[lane], &mark, tasks, taskCapacity, status); \
+        }                                                                                                                    \
+    })                                                                                                                       \
+    channels_close(&channels, places);                                                                                       \
     bits_flush(&bits, &queue);
 
 #endif

@@ -21,7 +21,7 @@
 #endif
 
 // Bits of a lane's state; none: nothing to do.
-#define RUN_INSIDE 1      // in the grid, at least in part
+#define RUN_INSIDE 1  // in the grid, at least in part
 #define RUN_OUTSIDE 2
 #define RUN_SKIPPED 4     // an index past the vertices, or a vertex that is not finite
 #define RUN_DEGENERATE 8  // no area; marked all the same

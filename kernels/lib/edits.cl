@@ -69,7 +69,8 @@ static inline bool edit_next(const Volume* volume, float3 origin, float3 directi
         for (int y = -EDIT_AROUND; y <= EDIT_AROUND; ++y)
             for (int x = -EDIT_AROUND; x <= EDIT_AROUND; ++x)
                 // The grid's own border is none of the region's.
-                if (edit_of(volume, clamp(cell[0] + x, 0, (int)volume->grid->size.x - 1), clamp(cell[1] + y, 0, (int)volume->grid->size.y - 1),
+                if (edit_of(volume, clamp(cell[0] + x, 0, (int)volume->grid->size.x - 1),
+                            clamp(cell[1] + y, 0, (int)volume->grid->size.y - 1),
                             clamp(cell[2] + z, 0, (int)volume->grid->size.z - 1)) == met)
                     inward += (float3)((float)x, (float)y, (float)z);
     hit->t = t;

@@ -9,9 +9,7 @@ typedef struct {
     real x, y, z;
 } Point;
 
-INLINE real point_axis(const Point d, const vitrail_float4 axis) {
-    return d.x * REAL(axis.x) + d.y * REAL(axis.y) + d.z * REAL(axis.z);
-}
+INLINE real point_axis(const Point d, const vitrail_float4 axis) { return d.x * REAL(axis.x) + d.y * REAL(axis.y) + d.z * REAL(axis.z); }
 
 INLINE Point point_cross(const Point a, const Point b) {
     const Point c = {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};

@@ -58,12 +58,12 @@ typedef struct {
 
 // A ray on its way from one surface to the next.
 typedef struct {
-    vitrail_Media media;  // that it is inside of
+    vitrail_Media media;           // that it is inside of
     uint triangle, otherTriangle;  // that it stands on, or NO_TRIANGLE
-    float least;  // only what lies past this distance counts
-    uint sheet;   // material of a surface without a body that the ray stands on and goes through, or VITRAIL_AIR
-    bool back;    // which it met from behind
-    int steps;    // cells and bricks walked so far
+    float least;                   // only what lies past this distance counts
+    uint sheet;                    // material of a surface without a body that the ray stands on and goes through, or VITRAIL_AIR
+    bool back;                     // which it met from behind
+    int steps;                     // cells and bricks walked so far
 } March;
 
 // A ray at its start; inside of a body of `material` or of nothing.
@@ -86,7 +86,8 @@ static inline bool march_opaque(const Volume* volume, uint material) { return vo
 // The medium before a crossing; `media` becomes what is behind. Thin walls and opaque surfaces hold nothing.
 static inline uint march_pass(const Volume* volume, const Crossing* hit, vitrail_Media* media) {
     uint before = vitrail_medium(media);
-    if (!march_thin(volume, hit->material) && !march_opaque(volume, hit->material)) before = vitrail_pass(media, hit->material, hit->inside);
+    if (!march_thin(volume, hit->material) && !march_opaque(volume, hit->material))
+        before = vitrail_pass(media, hit->material, hit->inside);
     if (hit->otherMaterial != VITRAIL_AIR && !march_thin(volume, hit->otherMaterial) && !march_opaque(volume, hit->otherMaterial))
         vitrail_pass(media, hit->otherMaterial, hit->otherInside);
     return before;
@@ -111,17 +112,19 @@ static inline float3 to_voxel(const vitrail_GridDesc* grid, float3 p) { return (
 static inline float3 to_world(const vitrail_GridDesc* grid, float3 p) { return p * grid->extent.x + xyz(grid->origin); }
 
 // The arguments that make a Volume and the first hits of a camera, for every kernel that marches.
-#define MARCH_PARAMETERS                                                                                                                    \
-    const vitrail_GridDesc grid, const vitrail_CameraDesc camera, global const float *positions, global const uint *indices,                \
-        global const float *normals, global const uint *triangleMaterial, global const uint *nearest, global const uint *words,             \
-        global const uint2 *bricks, global const uint *rank, global const uchar *mip, global const vitrail_SurfaceVoxel *surface,           \
-        global const vitrail_SurfaceVoxel *planes, global const uint *solid, global const uint2 *solidBricks,                               \
-        global const uint *voxelMaterial, global const vitrail_MaterialDesc *materials, global const uint *counts, global const uint *list, \
-        global const uint *end, int bound, const vitrail_Media around, global const float2 *texcoords,            \
+#define MARCH_PARAMETERS                                                                                                          \
+    const vitrail_GridDesc grid, const vitrail_CameraDesc camera, global const float *positions, global const uint *indices,      \
+        global const float *normals, global const uint *triangleMaterial, global const uint *nearest, global const uint *words,   \
+        global const uint2 *bricks, global const uint *rank, global const uchar *mip, global const vitrail_SurfaceVoxel *surface, \
+        global const vitrail_SurfaceVoxel *planes, global const uint *solid, global const uint2 *solidBricks,                     \
+        global const uint *voxelMaterial, global const vitrail_MaterialDesc *materials, global const uint *counts,                \
+        global const uint *list, global const uint *end, int bound, const vitrail_Media around, global const float2 *texcoords,   \
         global const uchar4 *texels, global const ushort *edits, const uint4 editLow, const uint4 editSize
-#define MARCH_VOLUME                                                                                                                         \
-    {&grid, words, bricks, rank, mip, surface, planes, solid, solidBricks, voxelMaterial, materials, bound, counts, list, end, positions, indices, \
-     normals, triangleMaterial, around, texcoords, texels, edits, editLow, editSize}
+#define MARCH_VOLUME                                                                                                              \
+    {                                                                                                                             \
+        &grid, words, bricks, rank, mip, surface, planes, solid, solidBricks, voxelMaterial, materials, bound, counts, list, end, \
+            positions, indices, normals, triangleMaterial, around, texcoords, texels, edits, editLow, editSize                    \
+    }
 
 // The shading normal there, or the flat one.
 static inline float3 march_shading(global const float* normals, const uint index[3], const float share[3], float3 flat) {

@@ -30,7 +30,8 @@ static inline void march_facet(vitrail_SurfaceVoxel record, float3 corner, float
 }
 
 // How far past the end of a plane the ray meets it, in cells: planes of a voxel end where they cross.
-static inline float march_past(const Facet facets[VITRAIL_SURFACE_PLANES], int count, int which, uint relations, float3 origin, float3 direction) {
+static inline float march_past(const Facet facets[VITRAIL_SURFACE_PLANES], int count, int which, uint relations, float3 origin,
+                               float3 direction) {
     const float3 p = origin + direction * facets[which].t;
     float past = 0.0f;
     for (int k = 0; k < count; ++k) {
@@ -76,7 +77,8 @@ static inline bool march_next(const Volume* volume, float3 origin, float3 direct
                 const size_t at = bits_word(volume->grid, volume->bricks, (uint)dda.x, (uint)dda.y, (uint)dda.z);
                 if (!((volume->words[at] >> (dda.z & 31)) & 1u)) {
                     // The bits know inside from outside, not one body from another.
-                    const bool tells = volume->materials[hit->material].colour.w <= 0.5f || (march->media.depth <= 1u && hit->inside == within);
+                    const bool tells =
+                        volume->materials[hit->material].colour.w <= 0.5f || (march->media.depth <= 1u && hit->inside == within);
                     if (tells && march_solid(volume, &dda) != within) {
                         found = true;
                         break;
@@ -98,7 +100,8 @@ static inline bool march_next(const Volume* volume, float3 origin, float3 direct
                 for (int k = 0; k < count; ++k)
                     march_facet(split ? volume->planes[first.normal + (uint)k] : first, corner, origin, direction, &facets[k]);
                 const uint material = volume->voxelMaterial[index];
-                const bool sheet = march_opaque(volume, material) || march_thin(volume, material), inside = vitrail_within(&march->media, material) != 0;
+                const bool sheet = march_opaque(volume, material) || march_thin(volume, material),
+                           inside = vitrail_within(&march->media, material) != 0;
                 int best = -1, other = -1;
                 for (int k = 0; k < count; ++k) {
                     const float t = facets[k].t;

@@ -8,56 +8,58 @@
 #pragma OPENCL FP_CONTRACT OFF
 
 // What every such kernel reads and writes.
-#define MARK_BUFFERS                                                                                                                 \
-    global const float *positions, global const uint *indices, uint vertexCount, global const uint *materials,                       \
-        global const float *colours, global const float *texcoords, global const float *texture, uint textureWidth,                  \
-        uint textureHeight, global uint *words, global uint2 *bricks, global const uint *rank, global uint *counts,                  \
-        global long *normalSums, global uint *materialIds, global long *colourSums, global long *orientationSums,                    \
-        global uint *list, global uint *cursor
+#define MARK_BUFFERS                                                                                                                    \
+    global const float *positions, global const uint *indices, uint vertexCount, global const uint *materials,                          \
+        global const float *colours, global const float *texcoords, global const float *texture, uint textureWidth, uint textureHeight, \
+        global uint *words, global uint2 *bricks, global const uint *rank, global uint *counts, global long *normalSums,                \
+        global uint *materialIds, global long *colourSums, global long *orientationSums, global uint *list, global uint *cursor
 
 #define MARK_PARAMETERS \
     MARK_BUFFERS, global uint2 *tasks, uint taskCapacity, global uint *status, uint first, uint groups, ulong count, uint perItem
 
 // Where a launch without channels sets bits.
-#define MARK_BITS {words, bricks}
+#define MARK_BITS \
+    { words, bricks }
 
 // Buffers of the channels asked for; null in a launch that sets bits.
-#define MARK_CHANNELS                                                                                                             \
-    {words, bricks, rank, counts, normalSums, materialIds, colourSums, orientationSums, list, cursor, materials, colours, texcoords, texture, \
-     textureWidth, textureHeight}
+#define MARK_CHANNELS                                                                                                                   \
+    {                                                                                                                                   \
+        words, bricks, rank, counts, normalSums, materialIds, colourSums, orientationSums, list, cursor, materials, colours, texcoords, \
+            texture, textureWidth, textureHeight                                                                                        \
+    }
 
 // A voxelizer without channels takes no notice of their buffers.
-#define MARK_WITHOUT_CHANNELS                                                                                                        \
+#define MARK_WITHOUT_CHANNELS                                                                                                          \
     (void)materials, (void)colours, (void)texcoords, (void)texture, (void)textureWidth, (void)textureHeight, (void)rank, (void)counts, \
         (void)normalSums, (void)materialIds, (void)colourSums, (void)orientationSums, (void)list, (void)cursor
 
 // Statement for every triangle, block >= 0 when it is a task.
-#define MARK_EACH(triangle, block, statement)                                                                          \
-    const size_t markFrom = groups ? get_global_id(0) : get_global_id(0) * (size_t)perItem;                            \
+#define MARK_EACH(triangle, block, statement)                                                                           \
+    const size_t markFrom = groups ? get_global_id(0) : get_global_id(0) * (size_t)perItem;                             \
     const size_t markEnd = groups ? (size_t)tasks_count(status, taskCapacity) : min(markFrom + perItem, (size_t)count); \
-    for (size_t i = markFrom; i < markEnd; i += groups ? groups : 1u) {                                                \
-        const uint2 markTask = groups ? tasks[i] : (uint2)(first + (uint)i, 0u);                                       \
-        const uint triangle = markTask.x;                                                                              \
-        const int block = groups ? (int)markTask.y : -1;                                                               \
-        if (triangle != TASKS_NONE) statement;                                                                         \
+    for (size_t i = markFrom; i < markEnd; i += groups ? groups : 1u) {                                                 \
+        const uint2 markTask = groups ? tasks[i] : (uint2)(first + (uint)i, 0u);                                        \
+        const uint triangle = markTask.x;                                                                               \
+        const int block = groups ? (int)markTask.y : -1;                                                                \
+        if (triangle != TASKS_NONE) statement;                                                                          \
     }
 
 // The same eight at a time: statement for up to eight `triangles` and their `blocks`, those that are `live` (-1).
-#define MARK_EIGHTS(triangles, blocks, live, statement)                                                                    \
-    const size_t markFrom = (groups ? LANES : (size_t)perItem) * get_global_id(0);                                         \
-    const size_t markEnd = groups ? (size_t)tasks_count(status, taskCapacity) : min(markFrom + perItem, (size_t)count);    \
-    for (size_t i = markFrom; i < markEnd; i += groups ? groups * (size_t)LANES : LANES) {                                 \
-        uint triangles[LANES];                                                                                             \
-        int blocks[LANES];                                                                                                 \
-        int8 live = LANES_IOTA_INT < (int)min(markEnd - i, (size_t)LANES);                                                 \
-        if (groups)                                                                                                        \
-            live &= tasks_load(tasks + i, markEnd - i, triangles, blocks);                                                 \
-        else                                                                                                               \
-            for (int markLane = 0; markLane < LANES; ++markLane) {                                                         \
-                triangles[markLane] = first + (uint)min(i + (size_t)markLane, markEnd - 1);                                \
-                blocks[markLane] = -1;                                                                                     \
-            }                                                                                                              \
-        statement;                                                                                                         \
+#define MARK_EIGHTS(triangles, blocks, live, statement)                                                                 \
+    const size_t markFrom = (groups ? LANES : (size_t)perItem) * get_global_id(0);                                      \
+    const size_t markEnd = groups ? (size_t)tasks_count(status, taskCapacity) : min(markFrom + perItem, (size_t)count); \
+    for (size_t i = markFrom; i < markEnd; i += groups ? groups * (size_t)LANES : LANES) {                              \
+        uint triangles[LANES];                                                                                          \
+        int blocks[LANES];                                                                                              \
+        int8 live = LANES_IOTA_INT < (int)min(markEnd - i, (size_t)LANES);                                              \
+        if (groups)                                                                                                     \
+            live &= tasks_load(tasks + i, markEnd - i, triangles, blocks);                                              \
+        else                                                                                                            \
+            for (int markLane = 0; markLane < LANES; ++markLane) {                                                      \
+                triangles[markLane] = first + (uint)min(i + (size_t)markLane, markEnd - 1);                             \
+                blocks[markLane] = -1;                                                                                  \
+            }                                                                                                           \
+        statement;                                                                                                      \
     }
 
 #endif

@@ -61,7 +61,8 @@ typedef struct {
 static inline float4 optics_texel(global const uchar4* texels, uint4 texture, float u, float v) {
     const float x = (u - floor(u)) * (float)texture.y - 0.5f, y = (v - floor(v)) * (float)texture.z - 0.5f;
     const float fx = floor(x), fy = floor(y), a = x - fx, b = y - fy;
-    const uint x0 = fx < 0.0f ? texture.y - 1u : min((uint)fx, texture.y - 1u), y0 = fy < 0.0f ? texture.z - 1u : min((uint)fy, texture.z - 1u);
+    const uint x0 = fx < 0.0f ? texture.y - 1u : min((uint)fx, texture.y - 1u),
+               y0 = fy < 0.0f ? texture.z - 1u : min((uint)fy, texture.z - 1u);
     const uint x1 = x0 + 1u < texture.y ? x0 + 1u : 0u, y1 = y0 + 1u < texture.z ? y0 + 1u : 0u;
     global const uchar4* base = texels + texture.x;
     const float4 top = convert_float4(base[y0 * texture.y + x0]) * (1.0f - a) + convert_float4(base[y0 * texture.y + x1]) * a;
@@ -94,7 +95,8 @@ static inline Look optics_look(const Volume* volume, const Crossing* hit) {
 }
 
 // Beer-Lambert of a straight way between two distances in `medium`, where no cell was edited. Changes between cells neither bend nor reflect.
-static inline float3 optics_absorb_along(const Volume* volume, float3 p, float3 d, float from, float to, const vitrail_Media* media, uint medium) {
+static inline float3 optics_absorb_along(const Volume* volume, float3 p, float3 d, float from, float to, const vitrail_Media* media,
+                                         uint medium) {
     const float cell = volume->grid->extent.x;
     if (!volume->edits || media->depth == 0u)
         return medium == VITRAIL_AIR ? (float3)(1.0f) : optics_absorb(volume->materials[medium].absorption, (to - from) * cell);
@@ -152,8 +154,8 @@ static __attribute__((unused)) float3 march_transmittance_from(const Volume* vol
 }
 
 // The first hit of a pixel of the G-buffer, and how far it is from the camera in world units. False: there is none.
-static inline __attribute__((unused)) bool march_first(const Volume* volume, const vitrail_CameraDesc* camera, global const uint* nearest, size_t pixel, float3* o,
-                               float3* d, Crossing* hit, float* way) {
+static inline __attribute__((unused)) bool march_first(const Volume* volume, const vitrail_CameraDesc* camera, global const uint* nearest,
+                                                       size_t pixel, float3* o, float3* d, Crossing* hit, float* way) {
     camera_ray(camera, (uint)(pixel % camera->width), (uint)(pixel / camera->width), o, d);
     const uint triangle = nearest[pixel];
     if (triangle == NO_TRIANGLE || !march_first_hit(volume->grid, volume->positions, volume->indices, volume->normals, triangle, *o, *d,

@@ -27,7 +27,7 @@
 #define CLOSER REAL(1.15)
 #define MAX_FACTOR REAL(64)
 #define MAX_SPLITS 20  // halvings; what is still too coarse is skipped
-#define TABLE_ROOM 56   // weights of a pattern in the table of voxelize/points.cl
+#define TABLE_ROOM 56  // weights of a pattern in the table of voxelize/points.cl
 #define TASK_SPLITS 5  // a task is a part after at most this many halvings: 4^5 = TASKS_BLOCKS
 
 #ifdef POINTS_MICRO
@@ -40,13 +40,13 @@ typedef struct {
     Bits bits;  // unless there are channels
     const Channels* channels;
     Share share;
-    uint x, y, z;      // the last point's cell
-    uint mask, times;  // bits of its word that wait, and points; times 0: nothing does
+    uint x, y, z;          // the last point's cell
+    uint mask, times;      // bits of its word that wait, and points; times 0: nothing does
     global real* weights;  // not null: points are not marked but written here, x to the first TABLE_ROOM, y to the next
     uint written;
 #ifdef POINTS_MICRO
     uint placement;
-    bool whole;  // no tessellation
+    bool whole;                       // no tessellation
     const struct PointsPatch* patch;  // the surface that weights are on, where it is not the triangle
 #endif
 } Scatter;
@@ -121,8 +121,7 @@ static inline bool points_outside(const vitrail_GridDesc* grid, const Point c[3]
                points_all_below(c[0].y, c[1].y, c[2].y) || points_all_below(y - c[0].y, y - c[1].y, y - c[2].y) ||
                points_all_below(c[0].z, c[1].z, c[2].z) || points_all_below(z - c[0].z, z - c[1].z, z - c[2].z);
     }
-    const real tx = REAL(grid->extent.x), ty = REAL(grid->extent.y), nearDepth = REAL(grid->extent.z),
-               farDepth = REAL(grid->extent.w);
+    const real tx = REAL(grid->extent.x), ty = REAL(grid->extent.y), nearDepth = REAL(grid->extent.z), farDepth = REAL(grid->extent.w);
     return points_all_below(c[0].z * tx + c[0].x, c[1].z * tx + c[1].x, c[2].z * tx + c[2].x) ||
            points_all_below(c[0].z * tx - c[0].x, c[1].z * tx - c[1].x, c[2].z * tx - c[2].x) ||
            points_all_below(c[0].z * ty + c[0].y, c[1].z * ty + c[1].y, c[2].z * ty + c[2].y) ||
@@ -263,7 +262,8 @@ static inline void points_part(const Point root[3], ulong path, int splits, Poin
 // A pattern's factor inside. A factor of one inside and more on an edge counts as a little more than one, as both specifications have it.
 static inline int points_inside(int n, const int t[3]) { return n <= 1 ? (t[0] > 1 || t[1] > 1 || t[2] > 1 ? 2 : 1) : n; }
 
-static inline void points_attributes(Scatter* s, global const float* positions, global const uint* indices, uint vertexCount, uint triangle) {
+static inline void points_attributes(Scatter* s, global const float* positions, global const uint* indices, uint vertexCount,
+                                     uint triangle) {
     uint corner[3];
     if (s->channels && triangle_corners(positions, indices, vertexCount, triangle, corner))
         channels_share(s->channels, s->grid, positions, corner, triangle, &s->share);
@@ -352,8 +352,8 @@ static inline void points_triangle(Scatter* s, float safetyFactor, global const 
             uint cell[3], other[3];
             together = points_cell(grid, points_voxel(grid, c[0]), cell);
             for (int e = 1; e < 3; ++e)
-                together = together && points_cell(grid, points_voxel(grid, c[e]), other) && other[0] == cell[0] &&
-                           other[1] == cell[1] && other[2] == cell[2];
+                together = together && points_cell(grid, points_voxel(grid, c[e]), other) && other[0] == cell[0] && other[1] == cell[1] &&
+                           other[2] == cell[2];
             if (together) points_put(s, cell[0], cell[1], cell[2], points_count(n, edges));
 #endif
             if (!together) points_tessellate(s, c, n, edges);

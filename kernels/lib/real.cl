@@ -5,8 +5,8 @@
 #pragma OPENCL FP_CONTRACT OFF
 #ifdef VITRAIL_SINGLE
 typedef float real;
-#define REAL_EPSILON 1.1920929e-7f    // 2^-23
-#define REAL_PARALLEL 1e-5f           // slopes beyond 1 / this are treated as vertical
+#define REAL_EPSILON 1.1920929e-7f  // 2^-23
+#define REAL_PARALLEL 1e-5f         // slopes beyond 1 / this are treated as vertical
 #else
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 typedef double real;

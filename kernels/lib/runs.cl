@@ -12,7 +12,7 @@
 
 // What the depths of a triangle's plane over the square of a column follow from.
 typedef struct {
-    real reach;  // box, orthographic: by how much it may differ from the centre's
+    real reach;                            // box, orthographic: by how much it may differ from the centre's
     real nx, ny, nz, d, spreadX, spreadY;  // perspective: plane nx x + ny y + nz w = d, and how far it spreads in half a column
 } Footprint;
 

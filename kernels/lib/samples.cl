@@ -19,9 +19,9 @@ typedef struct {
 
 typedef struct {
     Sample a, b, c;
-    real lowest, highest;            // of the slice coordinates
+    real lowest, highest;              // of the slice coordinates
     int xLeast, xMost, yLeast, yMost;  // columns that may be covered
-    bool perspective, behind;        // behind: some corner is not before the eye, nothing is monotonic
+    bool perspective, behind;          // behind: some corner is not before the eye, nothing is monotonic
 } Samples;
 
 // A corner seen from the line of a column.
@@ -85,8 +85,8 @@ static inline real samples_column(real x, real w, uint size, float tangent) {
 }
 
 // First column in [least, most + 1] that the edge from a (q <= 0) to b (q > 0) does not cross.
-static inline int samples_threshold(const vitrail_GridDesc* grid, bool perspective, Sample a, real qa, Sample b, real qb,
-                                    int least, int most) {
+static inline int samples_threshold(const vitrail_GridDesc* grid, bool perspective, Sample a, real qa, Sample b, real qb, int least,
+                                    int most) {
     real at = a.x * qb - b.x * qa;
     if (perspective)
         at = (at / (a.w * qb - b.w * qa) / REAL(grid->extent.x) * REAL(0.5f) + REAL(0.5f)) * REAL(grid->size.x);
@@ -172,13 +172,13 @@ INLINE uint samples_slice(const vitrail_GridDesc* grid, real z) { return z == RE
 // One slice's slab, thicker by `extension` (a share of the slice) on both sides, and the columns at whose centres a triangle may lie in it.
 typedef struct {
     real extension;
-    bool clips;              // false: all columns of the triangle, as on perspective grids
-    bool steep;              // columns are bounded in each row, by the plane z = a.z + (x - a.x) / columnsPer + (y - a.y) perRow
+    bool clips;  // false: all columns of the triangle, as on perspective grids
+    bool steep;  // columns are bounded in each row, by the plane z = a.z + (x - a.x) / columnsPer + (y - a.y) perRow
     real columnsPer, perRow;
-    real slack;              // what depths in and out of it may differ by
+    real slack;  // what depths in and out of it may differ by
     uint slice;
     int yLeast, yMost;
-    real low, high;          // of z - a.z, slack included
+    real low, high;  // of z - a.z, slack included
 } Slab;
 
 // Whether a depth in [0, size.z] is in the slab. Slabs are half-open; size.z itself is the last slice's. So without extension a depth is in
@@ -299,24 +299,20 @@ INLINE bool samples_row(const vitrail_GridDesc* grid, const Samples* s, int xLea
     return true;
 }
 
-INLINE int samples_edge_sense(real ra, real qa, real rb, real qb) {
-    return samples_crosses(ra, qa, rb, qb) ? (qa <= REAL(0) ? 1 : -1) : 0;
-}
+INLINE int samples_edge_sense(real ra, real qa, real rb, real qb) { return samples_crosses(ra, qa, rb, qb) ? (qa <= REAL(0) ? 1 : -1) : 0; }
 
 // +1 where the triangle covers column x of the row that `q` is seen from with its corners counterclockwise (x to the right, y up), -1 where
 // clockwise, 0 where it does not. The sum over its edges, so that it vanishes over the triangles of a closed surface, whatever is rounded.
 INLINE int samples_sense(const vitrail_GridDesc* grid, const Samples* s, const Seen* q, int x) {
-    const Seen r =
-        samples_seen(s->perspective, samples_centre(s->perspective, x, grid->size.x, grid->extent.x), s->a.x, s->b.x, s->c.x, s);
+    const Seen r = samples_seen(s->perspective, samples_centre(s->perspective, x, grid->size.x, grid->extent.x), s->a.x, s->b.x, s->c.x, s);
     return samples_edge_sense(r.a, q->a, r.b, q->b) + samples_edge_sense(r.b, q->b, r.c, q->c) + samples_edge_sense(r.c, q->c, r.a, q->a);
 }
 
 // Slice coordinate of the triangle at column x of that row. False when it does not cover the column's centre.
 INLINE bool samples_depth(const vitrail_GridDesc* grid, const Samples* s, const Seen* q, int x, real* depth) {
-    const Seen r =
-        samples_seen(s->perspective, samples_centre(s->perspective, x, grid->size.x, grid->extent.x), s->a.x, s->b.x, s->c.x, s);
-    if (s->behind && ((samples_crosses(r.a, q->a, r.b, q->b) != samples_crosses(r.b, q->b, r.c, q->c)) ==
-                      samples_crosses(r.c, q->c, r.a, q->a)))
+    const Seen r = samples_seen(s->perspective, samples_centre(s->perspective, x, grid->size.x, grid->extent.x), s->a.x, s->b.x, s->c.x, s);
+    if (s->behind &&
+        ((samples_crosses(r.a, q->a, r.b, q->b) != samples_crosses(r.b, q->b, r.c, q->c)) == samples_crosses(r.c, q->c, r.a, q->a)))
         return false;
     const real u = r.b * q->c - r.c * q->b, v = r.c * q->a - r.a * q->c, w = r.a * q->b - r.b * q->a;
     real z = s->a.z + (v * (s->b.z - s->a.z) + w * (s->c.z - s->a.z)) / ((u + v) + w);
@@ -363,7 +359,8 @@ INLINE int8 samples_eight(const vitrail_GridDesc* grid, global const float* posi
         const real8 least = lanes_min3(v[0], v[1], v[2]), most = lanes_max3(v[0], v[1], v[2]);
         if (axis != 2 || !everyDepth) inside &= LANES_TRUE(most >= LANES_OF(0)) & LANES_TRUE(least <= size);
         if (axis == 2) continue;
-        const real8 low = lanes_min(lanes_max(least - half_, LANES_OF(-2)), size), high = lanes_min(lanes_max(most - half_, LANES_OF(-2)), size);
+        const real8 low = lanes_min(lanes_max(least - half_, LANES_OF(-2)), size),
+                    high = lanes_min(lanes_max(most - half_, LANES_OF(-2)), size);
         covers &= lanes_ceil_int(low) < lanes_ceil_int(high);
     }
     return ~(good & inside & ~triangle_flat_eight(x, y, z) & ~covers);

@@ -42,7 +42,8 @@ kernel void boxes_shade(const vitrail_GridDesc grid, const vitrail_CameraDesc ca
                 const uint value = channel[bits_rank(words, rank, word, bit)];
                 if (colouring == BOXES_COUNT) {
                     const float h = clamp(log2((float)max(value, 1u)) / 6.0f, 0.0f, 1.0f);  // 1 to 64
-                    const float3 low = (float3)(0.03f, 0.06f, 0.30f), mid = (float3)(0.02f, 0.45f, 0.30f), high = (float3)(1.0f, 0.85f, 0.1f);
+                    const float3 low = (float3)(0.03f, 0.06f, 0.30f), mid = (float3)(0.02f, 0.45f, 0.30f),
+                                 high = (float3)(1.0f, 0.85f, 0.1f);
                     colour = h < 0.5f ? low + (mid - low) * (2.0f * h) : mid + (high - mid) * (2.0f * h - 1.0f);
                 } else {
                     colour = frame_unpack_normal(value) * 0.5f + 0.5f;
@@ -51,7 +52,8 @@ kernel void boxes_shade(const vitrail_GridDesc grid, const vitrail_CameraDesc ca
             // Faces apart by a fixed light, edges by a thin darker line.
             const float light = 0.55f + 0.30f * fmax(face.y, 0.0f) + 0.15f * fabs(face.x) + 0.05f * fabs(face.z);
             const float3 edge = 0.5f - way;
-            const float middle = fmax(fmin(edge.x, edge.y), fmin(fmax(edge.x, edge.y), edge.z));  // second smallest: distance to the face's rim
+            const float middle =
+                fmax(fmin(edge.x, edge.y), fmin(fmax(edge.x, edge.y), edge.z));  // second smallest: distance to the face's rim
             seen = (float4)(colour * light * (middle < 0.05f ? 0.75f : 1.0f), 1.0f);
         }
         samples[pixel] = seen;

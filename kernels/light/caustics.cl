@@ -57,7 +57,8 @@ kernel void caustics_photons(MARCH_PARAMETERS, const vitrail_LightDesc light, co
                     ended = true;
                     break;
                 }
-                const float ratio = thin ? 1.0f / march_index(&volume, hit.material) : march_index(&volume, before) / march_index(&volume, behind);
+                const float ratio =
+                    thin ? 1.0f / march_index(&volume, hit.material) : march_index(&volume, before) / march_index(&volume, behind);
                 const float3 facing = optics_facing(d, hit.normal, hit.flat);
                 const float reflected = fresnel_reflectance(-dot(d, facing), ratio);
                 if (thin || optics_cross(&d, facing, hit.flat, ratio)) {

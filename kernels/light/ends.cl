@@ -4,9 +4,9 @@
 #pragma OPENCL FP_CONTRACT OFF
 
 // rays: of each sample; from: where it goes on from, world. The mirror image on the first surface comes from the G-buffer.
-kernel void ends_shade(MARCH_PARAMETERS, const vitrail_LightDesc light, global const float4* map, global const float4* caustic, float4 place,
-                       global uint* status, global const vitrail_RayEnd* rays, global const float4* from, global float4* samples, ulong first, ulong count,
-                       uint perItem) {
+kernel void ends_shade(MARCH_PARAMETERS, const vitrail_LightDesc light, global const float4* map, global const float4* caustic,
+                       float4 place, global uint* status, global const vitrail_RayEnd* rays, global const float4* from,
+                       global float4* samples, ulong first, ulong count, uint perItem) {
     const Volume volume = MARCH_VOLUME;
     const float width = 2.0f * camera.up.w / (float)camera.height;  // of a pixel at distance 1
     FOR_RANGE(i, count, perItem) {

@@ -92,8 +92,8 @@ static void glass_trace(const Volume* volume, Crossing hit, float way, float3 di
         if (solid < 0.004f || ends->count >= MOST_ENDS - MOST_SPLITS - 2) solid = floor(solid);
         bool ended = solid == 1.0f, deeper = !hit.inside;
         if (solid > 0.0f) {
-            ends_add(ends, path.weight * look.colour * solid, hit.position, dot(path.direction, hit.normal) > 0.0f ? -hit.normal : hit.normal,
-                     &path.march.media, true);
+            ends_add(ends, path.weight * look.colour * solid, hit.position,
+                     dot(path.direction, hit.normal) > 0.0f ? -hit.normal : hit.normal, &path.march.media, true);
             path.weight *= 1.0f - solid;
             if (ended && main) *fate = VITRAIL_RAY_OPAQUE;
         }
@@ -112,17 +112,20 @@ static void glass_trace(const Volume* volume, Crossing hit, float way, float3 di
                 path.march.media = media;
                 path.over = over;
             } else {
-                const float ratio = thin ? 1.0f / march_index(volume, hit.material) : march_index(volume, before) / march_index(volume, behind);
+                const float ratio =
+                    thin ? 1.0f / march_index(volume, hit.material) : march_index(volume, before) / march_index(volume, behind);
                 float3 n = optics_facing(path.direction, hit.normal, hit.flat);
                 if (look.roughness > 0.0f)
-                    n = optics_facet(n, path.direction, look.roughness, optics_hash(sample, path.events, 0u), optics_hash(sample, path.events, 1u));
+                    n = optics_facet(n, path.direction, look.roughness, optics_hash(sample, path.events, 0u),
+                                     optics_hash(sample, path.events, 1u));
                 const bool first = main && path.events == 0u;
                 ++path.events;
                 bool back = false;  // the whole ray is reflected though it could pass
                 if (mirror && (reflects || (first && (thin || !hit.inside)))) {
                     const float reflected = fresnel_reflectance(-dot(path.direction, n), ratio);
                     if (!reflects) {
-                        ends_add(ends, path.weight * reflected, path.position, fresnel_reflect(path.direction, n), &path.march.media, false);
+                        ends_add(ends, path.weight * reflected, path.position, fresnel_reflect(path.direction, n), &path.march.media,
+                                 false);
                         path.weight *= 1.0f - reflected;
                     } else if (reflected < 1.0f) {
                         const float share = reflected * fmax(path.weight.x, fmax(path.weight.y, path.weight.z));
@@ -155,7 +158,8 @@ static void glass_trace(const Volume* volume, Crossing hit, float way, float3 di
                     path.march.media = media;
                     path.over = over;
                     if (hit.edited ? hit.over != 0u : !hit.inside) path.weight *= look.colour;
-                    if (hit.otherMaterial != VITRAIL_AIR && !hit.otherInside) path.weight *= xyz(volume->materials[hit.otherMaterial].colour);
+                    if (hit.otherMaterial != VITRAIL_AIR && !hit.otherInside)
+                        path.weight *= xyz(volume->materials[hit.otherMaterial].colour);
                 } else {
                     deeper = hit.inside || hit.edited;
                 }
@@ -188,7 +192,8 @@ static void glass_trace(const Volume* volume, Crossing hit, float way, float3 di
 
 // One sample a pixel of the G-buffer: the picture.
 kernel void glass_shade(MARCH_PARAMETERS, const vitrail_LightDesc light, global const float4* map, global const float4* caustic,
-                        const float4 place, int splits, global uint* status, global float4* samples, ulong first, ulong count, uint perItem) {
+                        const float4 place, int splits, global uint* status, global float4* samples, ulong first, ulong count,
+                        uint perItem) {
     const Volume volume = MARCH_VOLUME;
     const float width = 2.0f * camera.up.w / (float)camera.height;  // of a pixel at distance 1; the ground's tiles are filtered by it
     FOR_RANGE(i, count, perItem) {
@@ -229,7 +234,8 @@ kernel void glass_ends(MARCH_PARAMETERS, global vitrail_RayEnd* rays, ulong firs
         else
             ends_add(&ends, (float3)(1.0f), to_voxel(&grid, o), d, &volume.around, false);
         const End end = ends.end[0];
-        const vitrail_RayEnd out = {{end.direction.x, end.direction.y, end.direction.z}, fate, {end.weight.x, end.weight.y, end.weight.z}, events};
+        const vitrail_RayEnd out = {
+            {end.direction.x, end.direction.y, end.direction.z}, fate, {end.weight.x, end.weight.y, end.weight.z}, events};
         rays[pixel] = out;
     }
 }

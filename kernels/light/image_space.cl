@@ -6,11 +6,12 @@
 #pragma OPENCL FP_CONTRACT OFF
 
 // The mesh as it is seen, and where rays go; positions: where each ray goes on from, world, or null.
-#define IMAGE_PARAMETERS                                                                                                                    \
-    const vitrail_CameraDesc camera, global const float *positions, global const uint *indices, global const float *normals,                \
-        global const uint *triangleMaterial, global const uint *nearest, global const vitrail_MaterialDesc *materials,                      \
+#define IMAGE_PARAMETERS                                                                                                     \
+    const vitrail_CameraDesc camera, global const float *positions, global const uint *indices, global const float *normals, \
+        global const uint *triangleMaterial, global const uint *nearest, global const vitrail_MaterialDesc *materials,       \
         global vitrail_RayEnd *rays, global float4 *from
-#define IMAGE_SEEN {&camera, positions, indices, normals, triangleMaterial, materials}
+#define IMAGE_SEEN \
+    { &camera, positions, indices, normals, triangleMaterial, materials }
 
 typedef struct {
     const vitrail_CameraDesc* camera;

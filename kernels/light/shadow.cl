@@ -32,7 +32,8 @@ kernel void shadow_shade(MARCH_PARAMETERS, const vitrail_LightDesc light, global
         }
         const March start = march_begin(inside && !march_thin(&volume, material), material, 0.0f);
         bool bounded = false;
-        samples[pixel] = (float4)(lit ? march_transmittance_from(&volume, position, toLight, &start.media, &bounded) : (float3)(0.0f), alpha);
+        samples[pixel] =
+            (float4)(lit ? march_transmittance_from(&volume, position, toLight, &start.media, &bounded) : (float3)(0.0f), alpha);
         if (bounded) atomic_inc(status + STATUS_BOUNDED);
     }
 }

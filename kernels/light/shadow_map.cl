@@ -17,8 +17,8 @@ static inline bool shadow_map_column(const vitrail_GridDesc* grid, size_t i, uin
 
 // Eq. 1: depth of each voxel, its own absorption with it. counts, materials: null where every voxel absorbs the first of `absorptions`.
 kernel void shadow_map_layers(const vitrail_GridDesc grid, global const uint* words, global const uint2* bricks, global const uint* rank,
-                              global const uint* counts, global const uint* materials, global const float4* absorptions, global float4* depth,
-                              ulong count, uint perItem) {
+                              global const uint* counts, global const uint* materials, global const float4* absorptions,
+                              global float4* depth, ulong count, uint perItem) {
     FOR_RANGE(i, count, perItem) {
         uint x, y;
         if (!shadow_map_column(&grid, i, &x, &y)) continue;

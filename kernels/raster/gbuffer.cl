@@ -32,7 +32,8 @@ static inline Vector gbuffer_vertex(const vitrail_CameraDesc* camera, global con
 // Pixels whose centres' window coordinates may lie between low and high, along an axis of `count` pixels over [-half, half]. Those of
 // camera_window are off by less than 2^-19 of the axis.
 static inline void gbuffer_span(real low, real high, float half_, uint count, int* first, int* last) {
-    const real scale = REAL(count) / (REAL(2) * REAL(half_)), slack = REAL(count) * REAL(1.9073486328125e-6f) + REAL(0.0078125f) - REAL(0.5f);
+    const real scale = REAL(count) / (REAL(2) * REAL(half_)),
+               slack = REAL(count) * REAL(1.9073486328125e-6f) + REAL(0.0078125f) - REAL(0.5f);
     *first = real_ceil_int(real_max((low + REAL(half_)) * scale + (REAL(-1) - slack), REAL(0)));
     *last = real_floor_int(real_max(real_min((high + REAL(half_)) * scale + slack, REAL(count - 1u)), REAL(-1)));
 }
@@ -95,7 +96,7 @@ static inline bool gbuffer_triangle(const vitrail_CameraDesc* camera, global con
             const bool inside = (e0 >= REAL(0) && e1 >= REAL(0) && e2 >= REAL(0)) || (e0 <= REAL(0) && e1 <= REAL(0) && e2 <= REAL(0));
             if (!inside) continue;
             const real slope = flat ? n.z : vector_dot(n, ray);
-            if (slope == REAL(0)) continue;  // edge-on
+            if (slope == REAL(0)) continue;                        // edge-on
             if (faces == FACES_AWAY && slope > REAL(0)) continue;  // right, up, forward are left-handed: n is turned around
             const real z = flat ? (d - n.x * ray.x - n.y * ray.y) / slope : d / slope;
             if (!(z > REAL(0)) || z > REAL(1e30f)) continue;
@@ -113,11 +114,11 @@ static inline bool gbuffer_triangle(const vitrail_CameraDesc* camera, global con
 kernel void gbuffer_depth(const vitrail_CameraDesc camera, global const float* positions, global const uint* indices, uint vertexCount,
                           uint faces, global uint* depth, global uchar* boxed, ulong count, uint perItem) {
     FOR_RANGE(i, count, perItem)
-        boxed[i] = gbuffer_triangle(&camera, positions, indices, vertexCount, faces, (uint)i, false, depth, 0) ? 1 : 0;
+    boxed[i] = gbuffer_triangle(&camera, positions, indices, vertexCount, faces, (uint)i, false, depth, 0) ? 1 : 0;
 }
 
 kernel void gbuffer_nearest(const vitrail_CameraDesc camera, global const float* positions, global const uint* indices, uint vertexCount,
                             uint faces, global uint* depth, global const uchar* boxed, global uint* nearest, ulong count, uint perItem) {
     FOR_RANGE(i, count, perItem)
-        if (boxed[i]) gbuffer_triangle(&camera, positions, indices, vertexCount, faces, (uint)i, true, depth, nearest);
+    if (boxed[i]) gbuffer_triangle(&camera, positions, indices, vertexCount, faces, (uint)i, true, depth, nearest);
 }

@@ -314,8 +314,9 @@ static inline void pn_triangle(Scatter* s, real gamma, global const float* posit
     points_flush(s);
 }
 
-kernel void curved_points_mark(const vitrail_GridDesc grid, float safetyFactor, global const float* normals, global const float* heightPixels,
-                               global const float* steepest, uint heightsWidth, uint heightsHeight, MARK_PARAMETERS) {
+kernel void curved_points_mark(const vitrail_GridDesc grid, float safetyFactor, global const float* normals,
+                               global const float* heightPixels, global const float* steepest, uint heightsWidth, uint heightsHeight,
+                               MARK_PARAMETERS) {
     const Heights heights = {heightPixels, steepest, heightsWidth, heightsHeight};
     const Channels channels = MARK_CHANNELS;
     const Bits bits = MARK_BITS;
@@ -328,8 +329,8 @@ kernel void curved_points_mark(const vitrail_GridDesc grid, float safetyFactor, 
         if (!good && counting) atomic_inc(status + STATUS_SKIPPED);
         if (good) {
             points_attributes(&s, positions, indices, vertexCount, triangle);
-            pn_triangle(&s, REAL(safetyFactor), positions, normals, &heights, texcoords, corner, triangle, block, counting, tasks, taskCapacity,
-                        status);
+            pn_triangle(&s, REAL(safetyFactor), positions, normals, &heights, texcoords, corner, triangle, block, counting, tasks,
+                        taskCapacity, status);
         }
     })
 }

@@ -73,9 +73,9 @@ typedef struct {
     int8 good, outside, flat;  // -1 or 0
     int8 single;               // all its points, `times` of them, are in cell (x, y, z), or its only one is not in the grid (times 0)
     int8 x, y, z, times;
-    int8 small;                // the table has its pattern: inside factor n, edge factors t
+    int8 small;  // the table has its pattern: inside factor n, edge factors t
     int8 n, t[3];
-    real8 corner[3][3];        // axis, vertex
+    real8 corner[3][3];  // axis, vertex
 } Eight;
 
 INLINE void points_eight(const vitrail_GridDesc* grid, real gamma, global const float* positions, global const uint* indices,
@@ -92,7 +92,8 @@ INLINE void points_eight(const vitrail_GridDesc* grid, real gamma, global const 
     for (int axis = 0; axis < 3; ++axis) {
         const real8* v = eight->corner[axis];
         const uint size = axis == 0 ? grid->size.x : axis == 1 ? grid->size.y : grid->size.z;
-        eight->outside |= LANES_TRUE(lanes_max3(v[0], v[1], v[2]) < LANES_OF(0)) | LANES_TRUE(lanes_min3(v[0], v[1], v[2]) > LANES_OF(size));
+        eight->outside |=
+            LANES_TRUE(lanes_max3(v[0], v[1], v[2]) < LANES_OF(0)) | LANES_TRUE(lanes_min3(v[0], v[1], v[2]) > LANES_OF(size));
         int8 cells[3];
         for (int k = 0; k < 3; ++k) {
             factor[k] = lanes_max(factor[k], fabs(v[k] - v[k == 2 ? 0 : k + 1]));
@@ -136,8 +137,8 @@ kernel void points_mark(const vitrail_GridDesc grid, float safetyFactor, global 
             points_attributes(&s, positions, indices, vertexCount, triangles[lane]);
             if (!even || groups != 0u || !lanes_int_at(&eight.good, lane) || lanes_int_at(&eight.outside, lane) ||
                 (!lanes_int_at(&eight.small, lane))) {
-                points_triangle(&s, safetyFactor, positions, indices, vertexCount, triangles[lane], blocks[lane],
-                                blocks[lane] < 0 && !rank, tasks, taskCapacity, status);
+                points_triangle(&s, safetyFactor, positions, indices, vertexCount, triangles[lane], blocks[lane], blocks[lane] < 0 && !rank,
+                                tasks, taskCapacity, status);
                 continue;
             }
             if (!rank && lanes_int_at(&eight.flat, lane)) atomic_inc(status + STATUS_DEGENERATE);

@@ -3,15 +3,16 @@
 #include "lib/runs.cl"
 #pragma OPENCL FP_CONTRACT OFF
 
-#define SAMPLED_RUNS(constant)                                                                                                            \
-    case constant:                                                                                                                        \
-        clipped = runs_rows(constant, grid, &s, xLeast, xMost, yLeast, yMost, &footprint, nearest, farthest, bits, &share);              \
+#define SAMPLED_RUNS(constant)                                                                                              \
+    case constant:                                                                                                          \
+        clipped = runs_rows(constant, grid, &s, xLeast, xMost, yLeast, yMost, &footprint, nearest, farthest, bits, &share); \
         break
 
 // One triangle, or one block of a big one (block >= 0). Returns without marking when it is not usable.
 static inline void sampled_triangle(const vitrail_GridDesc* grid, uint flags, global uint* nearest, global uint* farthest,
                                     global const float* positions, global const uint* indices, uint vertexCount, uint triangle, int block,
-                                    const Bits* bits, const Channels* channels, global uint2* tasks, uint taskCapacity, global uint* status) {
+                                    const Bits* bits, const Channels* channels, global uint2* tasks, uint taskCapacity,
+                                    global uint* status) {
     uint corner[3];
     Samples s;
     const int state = samples_load(grid, positions, indices, vertexCount, triangle, false, corner, &s);

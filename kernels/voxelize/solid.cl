@@ -6,9 +6,9 @@
 #pragma OPENCL FP_CONTRACT OFF
 
 // beyond: a bit a column, toggled by crossings after the last cell's centre; where only bricks are looked for, by those before it.
-static inline void solid_triangle(const vitrail_GridDesc* grid, global uint* beyond, global const float* positions, global const uint* indices,
-                                  uint vertexCount, uint triangle, int block, const Bits* bits, global uint2* tasks, uint taskCapacity,
-                                  global uint* status) {
+static inline void solid_triangle(const vitrail_GridDesc* grid, global uint* beyond, global const float* positions,
+                                  global const uint* indices, uint vertexCount, uint triangle, int block, const Bits* bits,
+                                  global uint2* tasks, uint taskCapacity, global uint* status) {
     uint corner[3];
     Samples s;
     const int state = samples_load(grid, positions, indices, vertexCount, triangle, true, corner, &s);
@@ -47,7 +47,8 @@ kernel void solid_mark(const vitrail_GridDesc grid, global uint* beyond, MARK_PA
         live &= samples_eight(&grid, positions, indices, vertexCount, triangles, true);
         for (int lane = 0; lane < LANES; ++lane)
             if (lanes_int_at(&live, lane))
-                solid_triangle(&grid, beyond, positions, indices, vertexCount, triangles[lane], blocks[lane], &bits, tasks, taskCapacity, status);
+                solid_triangle(&grid, beyond, positions, indices, vertexCount, triangles[lane], blocks[lane], &bits, tasks, taskCapacity,
+                               status);
     })
 }
 
@@ -72,8 +73,8 @@ kernel void solid_bricks(const vitrail_GridDesc grid, global uint2* bricks, glob
 }
 
 // Toggles to insides, for eight columns of a row of tiles at a time. A column is open when its toggles, with those beyond it, are odd.
-kernel void solid_sweep(const vitrail_GridDesc grid, global uint* words, global uint2* bricks, global const uint* beyond, global uint* status, ulong count,
-                        uint perItem) {
+kernel void solid_sweep(const vitrail_GridDesc grid, global uint* words, global uint2* bricks, global const uint* beyond,
+                        global uint* status, ulong count, uint perItem) {
     uint odd = 0u;
     FOR_RANGE(row, count, perItem) {
         const size_t tile = row / 8u, y = tile / grid.tilesX * 8u + row % 8u, column = (y * grid.tilesX + tile % grid.tilesX) * 8u;

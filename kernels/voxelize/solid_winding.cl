@@ -199,8 +199,8 @@ INLINE void winding_pass(uint crossing, int* ofClosed, int* ofOpen) {
 
 // Sorts the crossings of each column (Shell 1959, gaps of Ciura 2001 and a factor of 2.25) and sets its bits as if caps had no winding number of
 // their own. ends: where the crossings of each column end.
-kernel void solid_winding_columns(const vitrail_GridDesc grid, global const uint* ends, global uint* crossings, global uint* bits, ulong count,
-                                  uint perItem) {
+kernel void solid_winding_columns(const vitrail_GridDesc grid, global const uint* ends, global uint* crossings, global uint* bits,
+                                  ulong count, uint perItem) {
     FOR_RANGE(column, count, perItem) {
         const uint x = (uint)(column % (grid.tilesX * 8u)), y = (uint)(column / (grid.tilesX * 8u));
         const uint begin = column != 0u ? ends[column - 1u] : 0u, number = ends[column] - begin;
@@ -277,8 +277,8 @@ INLINE real8 winding_number(Points a, Points b, Points c, real scale) {
     const float8 bx = convert_float8(b.x * scale), by = convert_float8(b.y * scale), bz = convert_float8(b.z * scale);
     const float8 cx = convert_float8(c.x * scale), cy = convert_float8(c.y * scale), cz = convert_float8(c.z * scale);
     const float8 la = sqrt(ax * ax + ay * ay + az * az), lb = sqrt(bx * bx + by * by + bz * bz), lc = sqrt(cx * cx + cy * cy + cz * cz);
-    const float8 under = la * lb * lc + (ax * bx + ay * by + az * bz) * lc + (bx * cx + by * cy + bz * cz) * la +
-                         (cx * ax + cy * ay + cz * az) * lb;
+    const float8 under =
+        la * lb * lc + (ax * bx + ay * by + az * bz) * lc + (bx * cx + by * cy + bz * cz) * la + (cx * ax + cy * ay + cz * az) * lb;
     return LANES_REAL(winding_atan2(convert_float8(over), under)) * (REAL(0.5f) / WINDING_PI);
 }
 
@@ -296,7 +296,8 @@ INLINE real winding_sum(const real8* v) {
 // Shares `count` caps (of `from`, or all when it is null) out: those far from the ball around `centre` are added to `far`, with the gradient of
 // a dipole; the others are listed in `to`. Returns how many. A cap of area A and size s whose nearest point to the ball is at a distance d is
 // far if 3 A r max(r, s) / (4 pi d^4) is below the tolerance: its winding number's second derivatives are at most 6 A / (4 pi d^4).
-static uint winding_share(global const float* caps, global const uint* from, uint count, Point centre, real radius, global uint* to, Far* far) {
+static uint winding_share(global const float* caps, global const uint* from, uint count, Point centre, real radius, global uint* to,
+                          Far* far) {
     const real scale = REAL(1) / radius;
     uint kept = 0u;
     real8 value = LANES_OF(0), gx = LANES_OF(0), gy = LANES_OF(0), gz = LANES_OF(0);
@@ -315,7 +316,8 @@ static uint winding_share(global const float* caps, global const uint* from, uin
             v[k].y = LANES_REAL(vload8(0, gathered[3 * k + 1])) - centre.y;
             v[k].z = LANES_REAL(vload8(0, gathered[3 * k + 2])) - centre.z;
         }
-        const Points middle = {(v[0].x + v[1].x + v[2].x) / REAL(3), (v[0].y + v[1].y + v[2].y) / REAL(3), (v[0].z + v[1].z + v[2].z) / REAL(3)};
+        const Points middle = {(v[0].x + v[1].x + v[2].x) / REAL(3), (v[0].y + v[1].y + v[2].y) / REAL(3),
+                               (v[0].z + v[1].z + v[2].z) / REAL(3)};
         const Points twice = winding_cross(winding_minus(v[1], v[0]), winding_minus(v[2], v[0]));
         const real8 area = sqrt(winding_dot(twice, twice)) * REAL(0.5f);
         real8 size = LANES_OF(0);
@@ -337,9 +339,12 @@ static uint winding_share(global const float* caps, global const uint* from, uin
             for (int lane = 0; lane < LANES; ++lane)
                 if (lanes_int_at(&isFar, lane)) {
                     ((real*)&value)[lane] += lanes_at(&whole, lane);
-                    ((real*)&gx)[lane] += lanes_at(&along, lane) * lanes_at(&middle.x, lane) - lanes_at(&third, lane) * lanes_at(&twice.x, lane);
-                    ((real*)&gy)[lane] += lanes_at(&along, lane) * lanes_at(&middle.y, lane) - lanes_at(&third, lane) * lanes_at(&twice.y, lane);
-                    ((real*)&gz)[lane] += lanes_at(&along, lane) * lanes_at(&middle.z, lane) - lanes_at(&third, lane) * lanes_at(&twice.z, lane);
+                    ((real*)&gx)[lane] +=
+                        lanes_at(&along, lane) * lanes_at(&middle.x, lane) - lanes_at(&third, lane) * lanes_at(&twice.x, lane);
+                    ((real*)&gy)[lane] +=
+                        lanes_at(&along, lane) * lanes_at(&middle.y, lane) - lanes_at(&third, lane) * lanes_at(&twice.y, lane);
+                    ((real*)&gz)[lane] +=
+                        lanes_at(&along, lane) * lanes_at(&middle.z, lane) - lanes_at(&third, lane) * lanes_at(&twice.z, lane);
                 }
         }
         const real8 bound = area / lanes_max(four * (REAL(4) * WINDING_PI), LANES_OF(1e-37f));
@@ -378,14 +383,16 @@ INLINE bool winding_settled(const Far* far, real radius) {
 }
 
 // Decides the cells of one cube with what the caps come to, four slices of two columns at a time. Returns how many of them are guesses.
-static uint winding_cube(const vitrail_GridDesc* grid, global const float* caps, global const uint* near, uint count, Point centre, real scale,
-                         const Far* far, int3 low, int3 high, global const uint* ends, global const uint* crossings, global uint* bits) {
+static uint winding_cube(const vitrail_GridDesc* grid, global const float* caps, global const uint* near, uint count, Point centre,
+                         real scale, const Far* far, int3 low, int3 high, global const uint* ends, global const uint* crossings,
+                         global uint* bits) {
     uint guesses = 0u;
     for (int y = low.y; y < high.y; y += LANES / WINDING_CUBE)
         for (int x = low.x; x < high.x; ++x) {
             real at[3][LANES];
             for (int lane = 0; lane < LANES; ++lane) {
-                const Point v = {REAL(x) + REAL(0.5f), REAL(y + lane / WINDING_CUBE) + REAL(0.5f), REAL(low.z + lane % WINDING_CUBE) + REAL(0.5f)};
+                const Point v = {REAL(x) + REAL(0.5f), REAL(y + lane / WINDING_CUBE) + REAL(0.5f),
+                                 REAL(low.z + lane % WINDING_CUBE) + REAL(0.5f)};
                 const Point p = grid_to_world(grid, v);
                 at[0][lane] = p.x;
                 at[1][lane] = p.y;
@@ -423,8 +430,8 @@ static uint winding_cube(const vitrail_GridDesc* grid, global const float* caps,
 
 // The ball around cells [low, high) and, of `count` caps listed in `from`, those near it in `to`; those far are added to `far`, moved there from
 // `fromCentre`. False if none of its cells has caps that matter.
-INLINE bool winding_narrow(const vitrail_GridDesc* grid, global const float* caps, global const uint* from, uint count, Point fromCentre, int3 low,
-                           int3 high, global uint* to, uint* kept, Point* centre, real* radius, Far* far) {
+INLINE bool winding_narrow(const vitrail_GridDesc* grid, global const float* caps, global const uint* from, uint count, Point fromCentre,
+                           int3 low, int3 high, global uint* to, uint* kept, Point* centre, real* radius, Far* far) {
     *centre = winding_ball(grid, low, high, radius);
     far->value += (centre->x - fromCentre.x) * far->gx + (centre->y - fromCentre.y) * far->gy + (centre->z - fromCentre.z) * far->gz;
     far->reach = REAL(0);
@@ -453,16 +460,18 @@ kernel void solid_winding_caps(const vitrail_GridDesc grid, global const float* 
         uint inBlock, inBrick, inCube;
         if (!winding_narrow(&grid, caps, 0, capCount, origin, at, end, nearBlock, &inBlock, &blockCentre, &radius, &ofBlock)) continue;
         for (uint i = 0u; i < 64u; ++i) {
-            const int3 low = at + (int3)((int)(i & 3u), (int)((i >> 2) & 3u), (int)(i >> 4)) * WINDING_BRICK, high = min(low + WINDING_BRICK, end);
+            const int3 low = at + (int3)((int)(i & 3u), (int)((i >> 2) & 3u), (int)(i >> 4)) * WINDING_BRICK,
+                       high = min(low + WINDING_BRICK, end);
             Far ofBrick = ofBlock;
-            if (any(low >= end) || !winding_narrow(&grid, caps, nearBlock, inBlock, blockCentre, low, high, nearBrick, &inBrick, &brickCentre,
-                                                   &radius, &ofBrick))
+            if (any(low >= end) || !winding_narrow(&grid, caps, nearBlock, inBlock, blockCentre, low, high, nearBrick, &inBrick,
+                                                   &brickCentre, &radius, &ofBrick))
                 continue;
             for (uint j = 0u; j < 8u; ++j) {
-                const int3 from = low + (int3)((int)(j & 1u), (int)((j >> 1) & 1u), (int)(j >> 2)) * WINDING_CUBE, to = min(from + WINDING_CUBE, high);
+                const int3 from = low + (int3)((int)(j & 1u), (int)((j >> 1) & 1u), (int)(j >> 2)) * WINDING_CUBE,
+                           to = min(from + WINDING_CUBE, high);
                 Far far = ofBrick;
-                if (any(from >= high) || !winding_narrow(&grid, caps, nearBrick, inBrick, brickCentre, from, to, nearCube, &inCube, &centre,
-                                                         &radius, &far))
+                if (any(from >= high) ||
+                    !winding_narrow(&grid, caps, nearBrick, inBrick, brickCentre, from, to, nearCube, &inCube, &centre, &radius, &far))
                     continue;
                 guesses += winding_cube(&grid, caps, nearCube, inCube, centre, REAL(1) / radius, &far, from, to, ends, crossings, bits);
             }

@@ -12,8 +12,8 @@
 #else
 #define SURFACE_ONE_PLANE false
 #endif
-#define SURFACE_GROWN 1e-6f       // by which a cell is larger on each side, so that a triangle in its face lies in it
-#define SURFACE_LEAST 1e-12f      // area, in cells, below which a triangle's part is none
+#define SURFACE_GROWN 1e-6f   // by which a cell is larger on each side, so that a triangle in its face lies in it
+#define SURFACE_LEAST 1e-12f  // area, in cells, below which a triangle's part is none
 
 // Integrals over a surface in fixed point: of 1, position p in the cell, shading normal s, the triangles' own normal, s (p - 1/2)^T row by row
 // and (p - 1/2) (p - 1/2)^T (xx, xy, xz, yy, yz, zz). Within a part s is linear in p, and the second moments of p are those of a square as large.
@@ -51,7 +51,8 @@ INLINE float8 surface_inverse(float8 a) { return a == 0.0f ? (float8)(1e30f) : 1
 
 // The triangles' parts inside a box around their origin, which lies in their plane, as integrals along the parts' edges: those of the
 // triangle inside the box, and those of the box's faces inside the triangle (Green's theorem). `n`: unit normals.
-INLINE void surface_clip(const float8 v[3][3], const float8 n[3], const float8 low[3], const float8 high[3], float8* area, float8 centroid[3]) {
+INLINE void surface_clip(const float8 v[3][3], const float8 n[3], const float8 low[3], const float8 high[3], float8* area,
+                         float8 centroid[3]) {
     float8 sum = (float8)(0.0f), moment[3];
     for (int i = 0; i < 3; ++i) moment[i] = (float8)(0.0f);
     float8 along[3][3], toLow[3][3], toHigh[3][3];  // of edge k: its vector, and where along it the planes of faces i lie
@@ -218,7 +219,8 @@ INLINE void surface_eight(const SurfaceMesh* mesh, size_t at, int live, const Po
             for (int j = 0; j < 3; ++j) derivative[3 * i + j] += shading[i] * slope[j];
         }
     }
-    const float8 square = surface_dot(mean, mean), weight = area * (square > 0.0f ? 1.0f / sqrt(square) : (float8)(0.0f)), spread = area * (1.0f / 12.0f);
+    const float8 square = surface_dot(mean, mean), weight = area * (square > 0.0f ? 1.0f / sqrt(square) : (float8)(0.0f)),
+                 spread = area * (1.0f / 12.0f);
     out->area = surface_fixed(area, good);
     float8 away[3];
 #pragma unroll
@@ -285,9 +287,7 @@ INLINE void surface_sum(const SurfaceEight* sums, SurfaceSum* sum) {
     for (int i = 0; i < 6; ++i) sum->square[i] = surface_across(sums->square[i]);
 }
 
-static inline float3 surface_mean(const long v[3], long area) {
-    return (float3)((float)v[0], (float)v[1], (float)v[2]) / (float)area;
-}
+static inline float3 surface_mean(const long v[3], long area) { return (float3)((float)v[0], (float)v[1], (float)v[2]) / (float)area; }
 
 static inline uint surface_field(float value, float unit) { return (uint)((int)rint(clamp(value / unit, -511.0f, 511.0f)) + 512); }
 
@@ -324,12 +324,15 @@ static inline vitrail_SurfaceVoxel surface_pack(const SurfaceSum* sum) {
         row[i] = (float3)(s[0], s[1], s[2]);
         own[i] = (float3)(p[0], p[1], p[2]);
     }
-    const float3 nt = (float3)(dot(row[0], t), dot(row[1], t), dot(row[2], t)), nb = (float3)(dot(row[0], b), dot(row[1], b), dot(row[2], b));
-    const float3 pt = (float3)(dot(own[0], t), dot(own[1], t), dot(own[2], t)), pb = (float3)(dot(own[0], b), dot(own[1], b), dot(own[2], b));
+    const float3 nt = (float3)(dot(row[0], t), dot(row[1], t), dot(row[2], t)),
+                 nb = (float3)(dot(row[0], b), dot(row[1], b), dot(row[2], b));
+    const float3 pt = (float3)(dot(own[0], t), dot(own[1], t), dot(own[2], t)),
+                 pb = (float3)(dot(own[0], b), dot(own[1], b), dot(own[2], b));
     const float tt = dot(pt, t), tb = dot(pt, b), bb = dot(pb, b), determinant = tt * bb - tb * tb;
     // d n / d t and d n / d b, then their components along t and b.
     const bool known = !SURFACE_ONE_PLANE && shaded && determinant > 1e-12f;
-    const float3 dt = known ? (nt * bb - nb * tb) / determinant : (float3)(0.0f), db = known ? (nb * tt - nt * tb) / determinant : (float3)(0.0f);
+    const float3 dt = known ? (nt * bb - nb * tb) / determinant : (float3)(0.0f),
+                 db = known ? (nb * tt - nt * tb) / determinant : (float3)(0.0f);
     const float g[4] = {dot(dt, t), dot(db, t), dot(dt, b), dot(db, b)};
     float most = 0.0f;
     for (int i = 0; i < 4; ++i) most = fmax(most, fabs(g[i]));
@@ -364,7 +367,8 @@ static inline uint surface_relation(const SurfaceSum* a, const SurfaceSum* b) {
 
 // The planes of a voxel: one, or around seeds, each the largest of the triangles that agree with no seed before (of equal ones the lowest).
 // A triangle goes to the seed it agrees with best.
-static inline int surface_planes(const SurfaceMesh* mesh, size_t from, size_t end, const Point corner, SurfaceSum sums[VITRAIL_SURFACE_PLANES]) {
+static inline int surface_planes(const SurfaceMesh* mesh, size_t from, size_t end, const Point corner,
+                                 SurfaceSum sums[VITRAIL_SURFACE_PLANES]) {
     SurfaceEight kept[SURFACE_KEPT];
     const int eights = (int)((end - from + LANES - 1) / LANES);
     float3 seed[VITRAIL_SURFACE_PLANES];
@@ -386,8 +390,8 @@ static inline int surface_planes(const SurfaceMesh* mesh, size_t from, size_t en
             for (int lane = 0; lane < LANES; ++lane) {
                 const long area = ((const long*)&parts->area)[lane];
                 if (area <= 0 || area < most || (area == most && parts->triangle[lane] >= lowest)) continue;
-                const float3 flat =
-                    (float3)(((const float*)&parts->unit[0])[lane], ((const float*)&parts->unit[1])[lane], ((const float*)&parts->unit[2])[lane]);
+                const float3 flat = (float3)(((const float*)&parts->unit[0])[lane], ((const float*)&parts->unit[1])[lane],
+                                             ((const float*)&parts->unit[2])[lane]);
                 bool agrees = false;
                 for (int i = 0; i < count; ++i) agrees = agrees || dot(seed[i], flat) > SURFACE_AGREES;
                 if (agrees) continue;
@@ -437,8 +441,9 @@ static inline int surface_planes(const SurfaceMesh* mesh, size_t from, size_t en
 // With a table, only these: `planes` then says where a voxel's begin.
 kernel void surface_gather(const vitrail_GridDesc grid, global const float* positions, global const uint* indices, uint vertexCount,
                            global const float* normals, global const uint* words, global const uint* brickTiles, global const uint* rank,
-                           global const uint* counts, global const uint* list, global const uint* cursor, global vitrail_SurfaceVoxel* surface,
-                           global uint* planes, global vitrail_SurfaceVoxel* table, ulong count, uint perItem) {
+                           global const uint* counts, global const uint* list, global const uint* cursor,
+                           global vitrail_SurfaceVoxel* surface, global uint* planes, global vitrail_SurfaceVoxel* table, ulong count,
+                           uint perItem) {
     const SurfaceMesh mesh = {&grid, positions, indices, vertexCount, normals, list};
     FOR_RANGE(group, count, perItem) {
         size_t index = rank[group];
@@ -454,7 +459,8 @@ kernel void surface_gather(const vitrail_GridDesc grid, global const float* posi
                 if (table && !(surface[index].centroid & VITRAIL_SURFACE_SPLIT)) continue;
                 const uint z = zWord + (31u - clz(rest & (0u - rest)));
                 const real edge = REAL(grid.extent.x);
-                const Point corner = {REAL(grid.origin.x) + REAL(x) * edge, REAL(grid.origin.y) + REAL(y) * edge, REAL(grid.origin.z) + REAL(z) * edge};
+                const Point corner = {REAL(grid.origin.x) + REAL(x) * edge, REAL(grid.origin.y) + REAL(y) * edge,
+                                      REAL(grid.origin.z) + REAL(z) * edge};
                 const size_t end = cursor[index];
                 SurfaceSum sums[VITRAIL_SURFACE_PLANES];
                 const int most = surface_planes(&mesh, end - counts[index], end, corner, sums);
