@@ -17,13 +17,15 @@ static inline uint frame_pack_normal(float3 n) {
     return ((uint)(int)rint(u * 32767.0f) & 0xffffu) | (((uint)(int)rint(v * 32767.0f) & 0xffffu) << 16);
 }
 
+// A vector along the normal, of no particular length.
+static inline float3 frame_unpack_along(uint code) {
+    const float u = (float)(short)(code & 0xffffu), v = (float)(short)(code >> 16), z = 32767.0f - fabs(u) - fabs(v);
+    const float fold = z < 0.0f ? -z : 0.0f;
+    return (float3)(u - copysign(fold, u), v - copysign(fold, v), z);
+}
+
 static inline float3 frame_unpack_normal(uint code) {
-    const float u = (float)(short)(code & 0xffffu) / 32767.0f, v = (float)(short)(code >> 16) / 32767.0f;
-    float3 n = (float3)(u, v, 1.0f - fabs(u) - fabs(v));
-    if (n.z < 0.0f) {
-        n.x = (1.0f - fabs(v)) * (u < 0.0f ? -1.0f : 1.0f);
-        n.y = (1.0f - fabs(u)) * (v < 0.0f ? -1.0f : 1.0f);
-    }
+    const float3 n = frame_unpack_along(code);
     return n / sqrt(dot(n, n));
 }
 

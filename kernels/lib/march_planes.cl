@@ -11,22 +11,22 @@
 
 #define OWN 1e-3f          // by which it counts as in its own
 #define NEAR_EDGE 0.01f    // cells past another plane of its voxel by which a plane still counts
+#define LEAST_SLOPE 0.03f  // of a vector along a plane's normal, at least 18,000 long, below which a ray is in the plane
 #define MARCH_LEAST 1e-3f  // where a march that starts on a surface begins, in cells
 
 // A plane of a voxel as a ray sees it.
 typedef struct {
     vitrail_SurfaceVoxel record;
-    float3 normal, flat, centroid;
+    float3 along, centroid;  // along its normal
     float slope, t;
 } Facet;
 
 static inline void march_facet(vitrail_SurfaceVoxel record, float3 corner, float3 origin, float3 direction, Facet* f) {
     f->record = record;
-    f->normal = frame_unpack_normal(record.normal);
-    f->flat = surface_flat(record, f->normal);
+    f->along = surface_flat_along(record);
     f->centroid = surface_centroid(record) + corner;
-    f->slope = dot(direction, f->flat);
-    f->t = fabs(f->slope) > 1e-6f ? dot(f->centroid - origin, f->flat) / f->slope : -1.0f;
+    f->slope = dot(direction, f->along);
+    f->t = fabs(f->slope) > LEAST_SLOPE ? dot(f->centroid - origin, f->along) / f->slope : -1.0f;
 }
 
 // How far past the end of a plane the ray meets it, in cells: planes of a voxel end where they cross.
@@ -37,7 +37,8 @@ static inline float march_past(const Facet facets[VITRAIL_SURFACE_PLANES], int c
     for (int k = 0; k < count; ++k) {
         if (k == which) continue;
         const uint relation = (relations >> (which + k - 1) * 2) & 3u;
-        const float ahead = dot(p - facets[k].centroid, facets[k].flat);
+        const float3 along = facets[k].along;
+        const float ahead = dot(p - facets[k].centroid, along) / sqrt(dot(along, along));
         if (relation != 0u) past = fmax(past, relation == VITRAIL_SURFACE_CONVEX ? ahead : -ahead);
     }
     return past;
@@ -46,8 +47,8 @@ static inline float march_past(const Facet facets[VITRAIL_SURFACE_PLANES], int c
 static inline void march_met(const Facet* f, float3 origin, float3 direction, uint material, Crossing* hit) {
     hit->t = f->t;
     hit->position = origin + direction * f->t;
-    hit->normal = surface_normal_at(f->record, f->normal, hit->position - f->centroid);
-    hit->flat = f->flat;
+    hit->normal = surface_normal_at(f->record, frame_unpack_normal(f->record.normal), hit->position - f->centroid);
+    hit->flat = f->along / sqrt(dot(f->along, f->along));
     hit->material = material;
     hit->inside = f->slope > 0.0f;
 }

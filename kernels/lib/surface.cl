@@ -8,15 +8,18 @@
 static inline float surface_signed(uint word, int field) { return (float)((int)((word >> 10 * field) & 1023u) - 512); }
 
 static inline float3 surface_centroid(vitrail_SurfaceVoxel s) {
-    return (float3)((float)(s.centroid & 1023u), (float)((s.centroid >> 10) & 1023u), (float)((s.centroid >> 20) & 1023u)) / 1023.0f;
+    return (float3)((float)(s.centroid & 1023u), (float)((s.centroid >> 10) & 1023u), (float)((s.centroid >> 20) & 1023u)) * (1.0f / 1023.0f);
 }
 
-// The plane's normal; `normal`: the record's, unpacked.
-static inline float3 surface_flat(vitrail_SurfaceVoxel s, float3 normal) {
-    float3 t, b;
-    frame_tangents(normal, &t, &b);
-    const float u = surface_signed(s.slope1, 1) / 511.0f, v = surface_signed(s.slope1, 2) / 511.0f, square = u * u + v * v;
-    return (normal * (1.0f - square) + (t * u + b * v) * 2.0f) / (1.0f + square);
+// A vector along the plane's normal, of no particular length: with tangents of the record's normal n as frame_tangents makes them, all
+// times |m| of a vector m along n, so that there is one division.
+static inline float3 surface_flat_along(vitrail_SurfaceVoxel s) {
+    const float3 m = frame_unpack_along(s.normal);
+    const float length = sqrt(dot(m, m)), sign = m.z < 0.0f ? -1.0f : 1.0f, inverse = 1.0f / (m.z + sign * length);
+    const float xx = m.x * m.x * inverse, xy = m.x * m.y * inverse, yy = m.y * m.y * inverse;
+    const float3 t = (float3)(length - sign * xx, -sign * xy, -sign * m.x), b = (float3)(-xy, sign * length - yy, -m.y);
+    const float u = surface_signed(s.slope1, 1) * (1.0f / 511.0f), v = surface_signed(s.slope1, 2) * (1.0f / 511.0f);
+    return m * (1.0f - u * u - v * v) + (t * u + b * v) * 2.0f;
 }
 
 // Shading normal at `offset` from the centroid, in cells.
