@@ -145,12 +145,11 @@ static inline void march_place(const Volume* volume, const uint index[3], const 
     for (int k = 0; k < 3; ++k) hit->texcoord += volume->texcoords[index[k]] * share[k];
 }
 
-// The triangle that the pixel sees, exactly: position and outward shading normal in voxel coordinates.
-static inline bool march_first_hit(const vitrail_GridDesc* grid, global const float* positions, global const uint* indices,
-                                   global const float* normals, uint triangle, float3 o, float3 d, float3* position, float3* normal,
-                                   float3* flat) {
+// The triangle that a pixel sees, exactly: position and outward shading normal in voxel coordinates; its corners and their shares.
+static inline bool march_first_shares(const vitrail_GridDesc* grid, global const float* positions, global const uint* indices,
+                                      global const float* normals, uint triangle, float3 o, float3 d, float3* position, float3* normal,
+                                      float3* flat, uint index[3], float share[3]) {
     float3 v[3];
-    uint index[3];
     for (int k = 0; k < 3; ++k) {
         index[k] = indices[3 * (size_t)triangle + k];
         v[k] = (float3)(positions[3 * (size_t)index[k]], positions[3 * (size_t)index[k] + 1], positions[3 * (size_t)index[k] + 2]);
@@ -164,9 +163,19 @@ static inline bool march_first_hit(const vitrail_GridDesc* grid, global const fl
     const float3 r = p - v[0];
     const float b1 = clamp(dot(cross(r, w), n) / (area * area), 0.0f, 1.0f), b2 = clamp(dot(cross(u, r), n) / (area * area), 0.0f, 1.0f);
     *position = to_voxel(grid, p);
-    const float share[3] = {1.0f - b1 - b2, b1, b2};
+    share[0] = 1.0f - b1 - b2;
+    share[1] = b1;
+    share[2] = b2;
     *normal = march_shading(normals, index, share, *flat);
     return true;
+}
+
+static inline bool march_first_hit(const vitrail_GridDesc* grid, global const float* positions, global const uint* indices,
+                                   global const float* normals, uint triangle, float3 o, float3 d, float3* position, float3* normal,
+                                   float3* flat) {
+    uint index[3];
+    float share[3];
+    return march_first_shares(grid, positions, indices, normals, triangle, o, d, position, normal, flat, index, share);
 }
 
 #endif

@@ -158,8 +158,10 @@ static inline __attribute__((unused)) bool march_first(const Volume* volume, con
                                                        size_t pixel, float3* o, float3* d, Crossing* hit, float* way) {
     camera_ray(camera, (uint)(pixel % camera->width), (uint)(pixel / camera->width), o, d);
     const uint triangle = nearest[pixel];
-    if (triangle == NO_TRIANGLE || !march_first_hit(volume->grid, volume->positions, volume->indices, volume->normals, triangle, *o, *d,
-                                                    &hit->position, &hit->normal, &hit->flat))
+    uint index[3];
+    float share[3];
+    if (triangle == NO_TRIANGLE || !march_first_shares(volume->grid, volume->positions, volume->indices, volume->normals, triangle, *o, *d,
+                                                       &hit->position, &hit->normal, &hit->flat, index, share))
         return false;
     hit->material = volume->triangleMaterial ? volume->triangleMaterial[triangle] : 0u;
     hit->triangle = triangle;
@@ -167,19 +169,6 @@ static inline __attribute__((unused)) bool march_first(const Volume* volume, con
     hit->otherMaterial = VITRAIL_AIR;
     hit->otherTriangle = NO_TRIANGLE;
     hit->otherInside = hit->edited = false;
-    uint index[3];
-    float share[3];
-    float3 v[3];
-    for (int k = 0; k < 3; ++k) {
-        index[k] = volume->indices[3 * (size_t)triangle + k];
-        const size_t at = 3 * (size_t)index[k];
-        v[k] = to_voxel(volume->grid, (float3)(volume->positions[at], volume->positions[at + 1], volume->positions[at + 2]));
-    }
-    const float3 across = cross(v[1] - v[0], v[2] - v[0]), r = hit->position - v[0];
-    const float square = dot(across, across);
-    share[1] = dot(cross(r, v[2] - v[0]), across) / square;
-    share[2] = dot(cross(v[1] - v[0], r), across) / square;
-    share[0] = 1.0f - share[1] - share[2];
     march_place(volume, index, share, hit);
     *way = dot(to_world(volume->grid, hit->position) - *o, *d);
     return true;

@@ -31,162 +31,217 @@ typedef struct {
     uint over;  // what its cell was edited to (lib/edits.cl)
 } Path;
 
-// Follows a ray that stands on its first hit, `way` world units from the camera, to its ends; the last is that of the ray that crosses where it
-// can, whose fate and events are told. `mirror`: surfaces reflect as Fresnel has it. The first shows a mirror image of the surroundings, and
-// what goes through loses as much; later ones split the ray `splits` times, and from then on pass it on whole by the stronger way. Without
-// splits later surfaces reflect nothing.
-static void glass_trace(const Volume* volume, Crossing hit, float way, float3 direction, bool mirror, int splits, Ends* ends, uint* fate,
-                        uint* events, uint sample) {
+// What is on both sides of a surface that a ray has come to.
+typedef struct {
+    vitrail_Media media;  // that it is inside of once it is through
+    uint before, behind;
+    uint over;  // what the cell behind was edited to
+} Sides;
+
+// A sample's rays. mirror: surfaces reflect as Fresnel has it. The first shows a mirror image of the surroundings, and what goes through loses
+// as much; later ones split the ray `splits` times, and from then on pass it on whole by the stronger way. Without splits later surfaces
+// reflect nothing.
+typedef struct {
+    const Volume* volume;
+    bool mirror, reflects;  // reflects: at later surfaces
+    int splits;
+    uint sample;
     Path waiting[MOST_SPLITS];
-    int waits = 0;
-    const bool reflects = mirror && splits > 0;
+    int waits;
+    Ends* ends;
+} Rays;
+
+// A ray at its first hit, `way` world units from the camera, or where the cells on the way there were edited.
+static inline Path glass_begin(const Volume* volume, float3 direction, Crossing* hit, float* way) {
     Path path;
     path.weight = (float3)(1.0f);
     path.direction = direction;
     path.march = march_begin(false, 0u, MARCH_LEAST);
     path.march.media = volume->around;
     path.events = 0u;
-    const float3 eye = hit.position - direction * (way / volume->grid->extent.x);
+    const float3 eye = hit->position - direction * (*way / volume->grid->extent.x);
     path.over = edit_at(volume, eye);
     if (volume->edits && volume->around.depth > 0u) {
         Crossing change;
-        if (edit_next(volume, eye, direction, &volume->around, path.over, way / volume->grid->extent.x, &change)) {
-            hit = change;
-            way = hit.t * volume->grid->extent.x;
+        if (edit_next(volume, eye, direction, &volume->around, path.over, *way / volume->grid->extent.x, &change)) {
+            *hit = change;
+            *way = hit->t * volume->grid->extent.x;
         }
     }
-    *fate = VITRAIL_RAY_LEFT;
-    bool main = true;
-    for (;;) {
-        // On a surface: `hit`, after `way` through what lies before it.
-        vitrail_Media media = path.march.media;
-        uint before, behind, over = 0u;
-        if (hit.edited) {
-            before = vitrail_medium(&media);
-            behind = hit.over != 0u ? hit.over - 1u : before;
-            over = hit.over;
-        } else {
-            before = march_pass(volume, &hit, &media);
-            behind = vitrail_medium(&media);
-            if (media.depth > 0u) over = edit_at(volume, hit.position + hit.flat * (hit.inside ? 0.05f : -0.05f));
-            if (over != 0u) behind = over - 1u;
-        }
-        if (path.over != 0u && path.march.media.depth > 0u) before = path.over - 1u;
-        if (before != VITRAIL_AIR) path.weight *= optics_absorb(volume->materials[before].absorption, way);
-        const bool opaque = march_opaque(volume, hit.material), thin = march_thin(volume, hit.material),
-                   other = hit.otherMaterial != VITRAIL_AIR && march_opaque(volume, hit.otherMaterial);
-        Look look = optics_look(volume, &hit);
-        if (!mirror) {
-            // As it is judged: each material as a whole, polished.
-            look.colour = xyz(volume->materials[hit.material].colour);
-            look.cover = 1.0f;
-            look.transmission = 1.0f;
-            look.roughness = 0.0f;
-        }
-        if (over != 0u) look.colour = xyz(volume->materials[over - 1u].colour);
-        if (other) look.colour = xyz(volume->materials[hit.otherMaterial].colour);
-        // The share that ends here on something diffuse. Without room for another end all of it does, or nothing.
-        float solid = opaque ? look.cover : look.cover * (1.0f - look.transmission);
-        if (other) solid = 1.0f;
-        if (solid > 0.996f || (ends->count >= MOST_ENDS - MOST_SPLITS - 2 && solid > 0.5f)) solid = 1.0f;
-        if (solid < 0.004f || ends->count >= MOST_ENDS - MOST_SPLITS - 2) solid = floor(solid);
-        bool ended = solid == 1.0f, deeper = !hit.inside;
-        if (solid > 0.0f) {
-            ends_add(ends, path.weight * look.colour * solid, hit.position,
-                     dot(path.direction, hit.normal) > 0.0f ? -hit.normal : hit.normal, &path.march.media, true);
-            path.weight *= 1.0f - solid;
-            if (ended && main) *fate = VITRAIL_RAY_OPAQUE;
-        }
-        if (!ended && path.events == VITRAIL_MOST_EVENTS) {
-            ended = true;
-            ends_add(ends, path.weight, hit.position, path.direction, &path.march.media, false);
-            if (main) *fate = VITRAIL_RAY_BOUNDED;
-        }
-        if (!ended) {
-            path.position = hit.position;
-            march_stand(volume, &hit, &path.march);
-            path.march.least = MARCH_LEAST;
-            if (opaque || look.cover == 0.0f) {
-                deeper = path.march.media.depth > 0u;  // past what is not there
-            } else if (before == behind && !thin) {
-                path.march.media = media;
-                path.over = over;
+    return path;
+}
+
+static inline Sides glass_sides(const Volume* volume, const Crossing* hit, const Path* path) {
+    Sides sides;
+    sides.media = path->march.media;
+    sides.over = 0u;
+    if (hit->edited) {
+        sides.before = vitrail_medium(&sides.media);
+        sides.behind = hit->over != 0u ? hit->over - 1u : sides.before;
+        sides.over = hit->over;
+    } else {
+        sides.before = march_pass(volume, hit, &sides.media);
+        sides.behind = vitrail_medium(&sides.media);
+        if (sides.media.depth > 0u) sides.over = edit_at(volume, hit->position + hit->flat * (hit->inside ? 0.05f : -0.05f));
+        if (sides.over != 0u) sides.behind = sides.over - 1u;
+    }
+    if (path->over != 0u && path->march.media.depth > 0u) sides.before = path->over - 1u;
+    return sides;
+}
+
+// What the surface is like; as it is judged, each material as a whole, polished.
+static inline Look glass_look(const Rays* rays, const Crossing* hit, uint over, bool other) {
+    const Volume* volume = rays->volume;
+    Look look = optics_look(volume, hit);
+    if (!rays->mirror) {
+        look.colour = xyz(volume->materials[hit->material].colour);
+        look.cover = 1.0f;
+        look.transmission = 1.0f;
+        look.roughness = 0.0f;
+    }
+    if (over != 0u) look.colour = xyz(volume->materials[over - 1u].colour);
+    if (other) look.colour = xyz(volume->materials[hit->otherMaterial].colour);
+    return look;
+}
+
+// The share of a ray that ends on what is diffuse of a surface. Without room for another end all of it does, or nothing.
+static inline float glass_diffuse(const Look* look, bool opaque, bool other, const Ends* ends) {
+    const bool full = ends->count >= MOST_ENDS - MOST_SPLITS - 2;
+    float share = other ? 1.0f : opaque ? look->cover : look->cover * (1.0f - look->transmission);
+    if (share > 0.996f || (full && share > 0.5f)) share = 1.0f;
+    return share < 0.004f || full ? floor(share) : share;
+}
+
+// Through a boundary of two media or a thin wall, or back from it. Returns whether the ray is inside of something from then on.
+static inline bool glass_cross(Rays* rays, const Crossing* hit, const Look* look, const Sides* sides, bool thin, bool main, Path* path) {
+    const Volume* volume = rays->volume;
+    const float ratio =
+        thin ? 1.0f / march_index(volume, hit->material) : march_index(volume, sides->before) / march_index(volume, sides->behind);
+    float3 n = optics_facing(path->direction, hit->normal, hit->flat);
+    if (look->roughness > 0.0f)
+        n = optics_facet(n, path->direction, look->roughness, optics_hash(rays->sample, path->events, 0u),
+                         optics_hash(rays->sample, path->events, 1u));
+    const bool first = main && path->events == 0u;
+    ++path->events;
+    bool back = false;  // the whole ray is reflected though it could pass
+    if (rays->mirror && (rays->reflects || (first && (thin || !hit->inside)))) {
+        const float reflected = fresnel_reflectance(-dot(path->direction, n), ratio);
+        if (!rays->reflects) {
+            ends_add(rays->ends, path->weight * reflected, path->position, fresnel_reflect(path->direction, n), &path->march.media, false);
+            path->weight *= 1.0f - reflected;
+        } else if (reflected < 1.0f) {
+            const float share = reflected * fmax(path->weight.x, fmax(path->weight.y, path->weight.z));
+            if (rays->splits > 0 && share > LEAST_SHARE) {
+                --rays->splits;
+                Path* image = &rays->waiting[rays->waits++];
+                *image = *path;
+                image->weight *= reflected;
+                optics_mirror(&image->direction, n, hit->flat);
+                image->march.back = !hit->inside;
+                path->weight *= 1.0f - reflected;
             } else {
-                const float ratio =
-                    thin ? 1.0f / march_index(volume, hit.material) : march_index(volume, before) / march_index(volume, behind);
-                float3 n = optics_facing(path.direction, hit.normal, hit.flat);
-                if (look.roughness > 0.0f)
-                    n = optics_facet(n, path.direction, look.roughness, optics_hash(sample, path.events, 0u),
-                                     optics_hash(sample, path.events, 1u));
-                const bool first = main && path.events == 0u;
-                ++path.events;
-                bool back = false;  // the whole ray is reflected though it could pass
-                if (mirror && (reflects || (first && (thin || !hit.inside)))) {
-                    const float reflected = fresnel_reflectance(-dot(path.direction, n), ratio);
-                    if (!reflects) {
-                        ends_add(ends, path.weight * reflected, path.position, fresnel_reflect(path.direction, n), &path.march.media,
-                                 false);
-                        path.weight *= 1.0f - reflected;
-                    } else if (reflected < 1.0f) {
-                        const float share = reflected * fmax(path.weight.x, fmax(path.weight.y, path.weight.z));
-                        if (splits > 0 && share > LEAST_SHARE) {
-                            --splits;
-                            Path* image = &waiting[waits++];
-                            *image = path;
-                            image->weight *= reflected;
-                            optics_mirror(&image->direction, n, hit.flat);
-                            image->march.back = !hit.inside;
-                            path.weight *= 1.0f - reflected;
-                        } else {
-                            back = reflected > 0.5f;
-                        }
-                    }
-                }
-                if (back) {
-                    optics_mirror(&path.direction, n, hit.flat);
-                    path.march.back = !hit.inside;
-                    deeper = hit.inside;
-                } else if (thin) {
-                    // Straight on; rough, the mirror image of what a facet reflects.
-                    if (look.roughness > 0.0f) {
-                        optics_mirror(&path.direction, n, hit.flat);
-                        path.direction -= hit.flat * (2.0f * dot(path.direction, hit.flat));
-                    }
-                    path.weight *= look.colour;
-                    deeper = false;
-                } else if (optics_cross(&path.direction, n, hit.flat, ratio)) {
-                    path.march.media = media;
-                    path.over = over;
-                    if (hit.edited ? hit.over != 0u : !hit.inside) path.weight *= look.colour;
-                    if (hit.otherMaterial != VITRAIL_AIR && !hit.otherInside)
-                        path.weight *= xyz(volume->materials[hit.otherMaterial].colour);
-                } else {
-                    deeper = hit.inside || hit.edited;
-                }
+                back = reflected > 0.5f;
             }
         }
-        for (;;) {
-            if (main) *events = path.events;
-            if (ended) {
-                main = false;
-                if (waits == 0) return;
-                path = waiting[--waits];
-                deeper = false;
-                ended = false;
-            }
-            if (march_next(volume, path.position, path.direction, &path.march, &hit)) {
-                if (volume->edits && path.march.media.depth > 0u)
-                    edit_next(volume, path.position, path.direction, &path.march.media, path.over, hit.t, &hit);
-                break;
-            }
-            ends_add(ends, path.weight, path.position, path.direction, &path.march.media, false);
-            if (main && path.march.steps >= volume->bound)
-                *fate = VITRAIL_RAY_BOUNDED;
-            else if (main && deeper)
-                *fate = VITRAIL_RAY_LOST;
-            ended = true;
+    }
+    if (back) {
+        optics_mirror(&path->direction, n, hit->flat);
+        path->march.back = !hit->inside;
+        return hit->inside;
+    }
+    if (thin) {
+        // Straight on; rough, the mirror image of what a facet reflects.
+        if (look->roughness > 0.0f) {
+            optics_mirror(&path->direction, n, hit->flat);
+            path->direction -= hit->flat * (2.0f * dot(path->direction, hit->flat));
         }
+        path->weight *= look->colour;
+        return false;
+    }
+    if (!optics_cross(&path->direction, n, hit->flat, ratio)) return hit->inside || hit->edited;
+    path->march.media = sides->media;
+    path->over = sides->over;
+    if (hit->edited ? hit->over != 0u : !hit->inside) path->weight *= look->colour;
+    if (hit->otherMaterial != VITRAIL_AIR && !hit->otherInside) path->weight *= xyz(volume->materials[hit->otherMaterial].colour);
+    return !hit->inside;
+}
+
+// A ray on a surface, after `way` world units through what lies before it. False: it ends there, for what `fate` then says.
+static inline bool glass_meet(Rays* rays, const Crossing* hit, float way, bool main, Path* path, bool* deeper, uint* fate) {
+    const Volume* volume = rays->volume;
+    Ends* ends = rays->ends;
+    const Sides sides = glass_sides(volume, hit, path);
+    if (sides.before != VITRAIL_AIR) path->weight *= optics_absorb(volume->materials[sides.before].absorption, way);
+    const bool opaque = march_opaque(volume, hit->material), thin = march_thin(volume, hit->material),
+               other = hit->otherMaterial != VITRAIL_AIR && march_opaque(volume, hit->otherMaterial);
+    const Look look = glass_look(rays, hit, sides.over, other);
+    const float diffuse = glass_diffuse(&look, opaque, other, ends);
+    if (diffuse > 0.0f) {
+        ends_add(ends, path->weight * look.colour * diffuse, hit->position,
+                 dot(path->direction, hit->normal) > 0.0f ? -hit->normal : hit->normal, &path->march.media, true);
+        path->weight *= 1.0f - diffuse;
+        if (diffuse == 1.0f) {
+            *fate = VITRAIL_RAY_OPAQUE;
+            return false;
+        }
+    }
+    if (path->events == VITRAIL_MOST_EVENTS) {
+        ends_add(ends, path->weight, hit->position, path->direction, &path->march.media, false);
+        *fate = VITRAIL_RAY_BOUNDED;
+        return false;
+    }
+    path->position = hit->position;
+    march_stand(volume, hit, &path->march);
+    path->march.least = MARCH_LEAST;
+    *deeper = !hit->inside;
+    if (opaque || look.cover == 0.0f) {
+        *deeper = path->march.media.depth > 0u;  // past what is not there
+    } else if (sides.before == sides.behind && !thin) {
+        path->march.media = sides.media;
+        path->over = sides.over;
+    } else {
+        *deeper = glass_cross(rays, hit, &look, &sides, thin, main, path);
+    }
+    return true;
+}
+
+// Follows a ray to its end; `hit`: what it stands on, if it is the main one. Returns its fate.
+static inline uint glass_follow(Rays* rays, Crossing hit, float way, bool main, Path* path) {
+    const Volume* volume = rays->volume;
+    uint fate = VITRAIL_RAY_LEFT;
+    bool deeper = false;
+    for (bool on = main;; on = true) {
+        if (on && !glass_meet(rays, &hit, way, main, path, &deeper, &fate)) return fate;
+        if (!march_next(volume, path->position, path->direction, &path->march, &hit)) break;
+        if (volume->edits && path->march.media.depth > 0u)
+            edit_next(volume, path->position, path->direction, &path->march.media, path->over, hit.t, &hit);
         way = hit.t * volume->grid->extent.x;
+    }
+    ends_add(rays->ends, path->weight, path->position, path->direction, &path->march.media, false);
+    return path->march.steps >= volume->bound ? VITRAIL_RAY_BOUNDED : deeper ? VITRAIL_RAY_LOST : VITRAIL_RAY_LEFT;
+}
+
+// Follows a ray that stands on its first hit, `way` world units from the camera, and those that split off, to their ends. Told are fate and
+// events of the main ray, which crosses where it can.
+static void glass_trace(const Volume* volume, Crossing hit, float way, float3 direction, bool mirror, int splits, Ends* ends, uint* fate,
+                        uint* events, uint sample) {
+    Rays rays;
+    rays.volume = volume;
+    rays.mirror = mirror;
+    rays.reflects = mirror && splits > 0;
+    rays.splits = splits;
+    rays.sample = sample;
+    rays.waits = 0;
+    rays.ends = ends;
+    Path path = glass_begin(volume, direction, &hit, &way);
+    for (bool main = true;; main = false) {
+        const uint how = glass_follow(&rays, hit, way, main, &path);
+        if (main) {
+            *fate = how;
+            *events = path.events;
+        }
+        if (rays.waits == 0) return;
+        path = rays.waiting[--rays.waits];
     }
 }
 
