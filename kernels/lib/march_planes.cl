@@ -44,13 +44,16 @@ static inline float march_past(const Facet facets[VITRAIL_SURFACE_PLANES], int c
     return past;
 }
 
-static inline void march_met(const Facet* f, float3 origin, float3 direction, uint material, Crossing* hit) {
+INLINE void march_met(const Facet* f, float3 origin, float3 direction, uint material, Crossing* hit) {
     hit->t = f->t;
     hit->position = origin + direction * f->t;
     hit->normal = surface_normal_at(f->record, frame_unpack_normal(f->record.normal), hit->position - f->centroid);
     hit->flat = f->along / sqrt(dot(f->along, f->along));
     hit->material = material;
     hit->inside = f->slope > 0.0f;
+    hit->triangle = hit->otherTriangle = NO_TRIANGLE;
+    hit->otherMaterial = VITRAIL_AIR;
+    hit->otherInside = hit->placed = hit->edited = false;
 }
 
 // Whether a cell without surface is inside.
@@ -65,25 +68,20 @@ static inline bool march_next(const Volume* volume, float3 origin, float3 direct
     const float tLeast = march->least;
     Dda dda;
     dda.steps = march->steps;
-    hit->inside = within;
-    hit->triangle = hit->otherTriangle = NO_TRIANGLE;
-    hit->otherMaterial = VITRAIL_AIR;
-    hit->otherInside = hit->placed = false;
-    hit->edited = false;
+    Facet met;  // a candidate, until it is `found`
+    uint metMaterial = 0u;
     bool found = false, away = false;  // away: past a cell without surface
-    float aside = 2.0f;                // how far outside its cell the candidate in `hit` was met; 2: there is none
+    float aside = 2.0f;                // how far outside its cell the candidate was met; 2: there is none
     if (dda_start(&dda, volume->grid, origin, direction, fmax(tLeast - REACH, 0.0f))) {
         for (;;) {
-            if (aside < 2.0f && dda.enter > hit->t && dda.steps < volume->bound) {
+            if (aside < 2.0f && dda.enter > met.t && dda.steps < volume->bound) {
                 const size_t at = bits_word(volume->grid, volume->bricks, (uint)dda.x, (uint)dda.y, (uint)dda.z);
                 if (!((volume->words[at] >> (dda.z & 31)) & 1u)) {
                     // The bits know inside from outside, not one body from another.
                     const bool tells =
-                        volume->materials[hit->material].colour.w <= 0.5f || (march->media.depth <= 1u && hit->inside == within);
-                    if (tells && march_solid(volume, &dda) != within) {
-                        found = true;
-                        break;
-                    }
+                        volume->materials[metMaterial].colour.w <= 0.5f || (march->media.depth <= 1u && (met.slope > 0.0f) == within);
+                    found = tells && march_solid(volume, &dda) != within;
+                    if (found) break;
                     aside = 2.0f;
                 }
             }
@@ -116,28 +114,28 @@ static inline bool march_next(const Volume* volume, float3 origin, float3 direct
                             if (best < 0 || t < facets[best].t) best = k;
                         } else if (off < aside) {
                             aside = off;
-                            march_met(&facets[k], origin, direction, material, hit);
+                            met = facets[k];
+                            metMaterial = material;
                         }
                     } else if (away && off <= OWN && (other < 0 || t < facets[other].t)) {
                         other = k;
                     }
                 }
-                if (other >= 0 && (best < 0 || facets[other].t < facets[best].t)) {
-                    if (!(aside < 2.0f && hit->t < facets[other].t && hit->material == material))
-                        march_met(&facets[other], origin, direction, material, hit);
-                    found = true;
-                    break;
-                }
-                if (best >= 0) {
-                    march_met(&facets[best], origin, direction, material, hit);
-                    found = true;
+                const bool turned = other >= 0 && (best < 0 || facets[other].t < facets[best].t);
+                found = turned || best >= 0;
+                if (found) {
+                    // The ray came in between cells before it left here.
+                    const bool earlier = turned && aside < 2.0f && met.t < facets[other].t && metMaterial == material;
+                    if (!earlier) met = facets[turned ? other : best];
+                    metMaterial = material;
                     break;
                 }
             }
             if (!dda_step(&dda, volume->grid)) break;
         }
-        if (!found && aside < 2.0f && within && dda.steps < volume->bound) found = true;
+        found = found || (aside < 2.0f && within && dda.steps < volume->bound);
     }
+    if (found) march_met(&met, origin, direction, metMaterial, hit);
     march->steps = dda.steps;
     return found;
 }
