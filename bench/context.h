@@ -2,7 +2,9 @@
 #pragma once
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <vitrail/core/device.h>
@@ -13,6 +15,14 @@ inline void addMachineContext(const vitrail::DeviceInfo& device) {
     const vitrail::cli::Json machine = vitrail::cli::machineRecord(device);
     for (const auto& [key, value] : machine.items())
         benchmark::AddCustomContext(key, value.is_string() ? value.get<std::string>() : value.dump());
+}
+
+/// Whether the flag is among the arguments, which then lose it.
+inline bool takeFlag(int& argc, char** argv, std::string_view flag) {
+    char** end = std::remove(argv + 1, argv + argc, flag);
+    const bool there = end != argv + argc;
+    argc = static_cast<int>(end - argv);
+    return there;
 }
 
 /// Google Benchmark's flags, `defaults` first. False where one is not known; a message is out then.

@@ -9,8 +9,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <span>
@@ -18,15 +16,12 @@
 #include <thread>
 #include <vector>
 
-#include <vitrail/core/error.h>
-#include <vitrail/io/load.h>
 #include <vitrail/metrics/voxels.h>
 #include <vitrail/metrics/watertight.h>
 #include <vitrail/reference/truth.h>
-#include <vitrail/scene/shapes.h>
 #include <vitrail/voxelize/voxelize.h>
 
-#include "context.h"
+#include "inputs.h"
 #include "native/edge_runs.h"
 #include "native/separating_axis.h"
 #include "peers/peers.h"
@@ -59,13 +54,10 @@ std::vector<Input> inputs() {
     shape("terrain", {"cells=256"});
     for (const unsigned times : {1u, 2u, 3u, 4u, 5u})  // 16,384 to 4.2 million triangles
         all.push_back({"torus+" + std::to_string(times), [=] { return subdivide(makeShape("torus"), times); }, true});
-    const char* folder = std::getenv("VITRAIL_DATA");
-    const auto file = [&](const char* name, unsigned times) {
-        if (folder == nullptr) return;
-        const auto path = std::filesystem::path(folder) / "meshes" / name;
-        if (!std::filesystem::exists(path)) return;
-        all.push_back({path.stem().string() + (times != 0 ? "+" + std::to_string(times) : ""),
-                       [=] { return times != 0 ? subdivide(load(path), times) : load(path); }});
+    const auto file = [&](const std::string& name, unsigned times) {
+        if (const auto path = dataMesh("meshes/" + name))
+            all.push_back({path->stem().string() + (times != 0 ? "+" + std::to_string(times) : ""),
+                           [path = *path, times] { return times != 0 ? subdivide(load(path), times) : load(path); }});
     };
     for (const char* name : {"teapot.ply", "bun_zipper.ply", "horse.ply", "turbineblade.ply", "dragon_vrip_res2.ply"}) file(name, 0);
     file("dragon_vrip_res2.ply", 1);  // 810,080 triangles
@@ -94,7 +86,7 @@ double measureCopy(unsigned threads) {
 /// The device, and what is made when first needed and kept: meshes on both sides, and the errors of every benchmark.
 class Bench {
 public:
-    explicit Bench(bool withoutErrors) : timesOnly(withoutErrors), device_(Device::select()), queue_(device_) {}
+    Bench(Queue& queue, bool withoutErrors) : timesOnly(withoutErrors), queue_(queue) {}
 
     const bool timesOnly;
     const double copyBandwidth = measureCopy(std::max(1u, std::thread::hardware_concurrency()));  ///< bytes read and written a second
@@ -106,8 +98,7 @@ public:
     using MakeBits = std::function<VoxelBits(Bench&, const Loaded&, const Grid&)>;
 
     Queue& queue() { return queue_; }
-    const DeviceInfo& deviceInfo() const { return device_.info(); }
-    unsigned threads() const { return std::max(1u, device_.info().computeUnits); }
+    unsigned threads() const { return threads_; }
 
     const Loaded& mesh(const Input& input) {
         auto found = meshes_.find(input.name);
@@ -155,8 +146,8 @@ private:
         std::string name;
         MakeBits bits;
     };
-    Device device_;
-    Queue queue_;
+    Queue& queue_;
+    const unsigned threads_ = std::max(1u, Device::select().info().computeUnits);
     std::map<std::string, Loaded> meshes_;
     std::map<std::string, std::vector<Member>> groups_;
     std::map<std::string, benchmark::UserCounters> errors_;
@@ -267,19 +258,6 @@ void benchPeer(benchmark::State& state, Bench& bench, const Case& one, const pee
     state.SetLabel(peer.rule);
 }
 
-benchmark::internal::Benchmark* add(const std::string& name, std::function<void(benchmark::State&)> run) {
-    return benchmark::RegisterBenchmark(name.c_str(),
-                                        [run = std::move(run)](benchmark::State& state) {
-                                            try {
-                                                run(state);
-                                            } catch (const std::exception& error) {
-                                                state.SkipWithError(error.what());
-                                            }
-                                        })
-        ->UseManualTime()
-        ->Unit(benchmark::kMillisecond);
-}
-
 /// The method's defaults and, where options are swept, each option at powers of two of its default (of an eighth of its range where that
 /// is 0), or a switch turned.
 std::vector<std::string> optionChoices(const Method& method, std::uint32_t resolution, bool scaling) {
@@ -321,7 +299,8 @@ void addAll(Bench& bench, const std::vector<Input>& meshes, bool withPeers) {
                     bench.judgeLater(group, one.name, [voxelizer](Bench& b, const Bench::Loaded& loaded, const Grid& grid) {
                         return voxelize(b.queue(), loaded.onDevice, grid, voxelizer).host();
                     });
-                    add(one.name, [&bench, one, voxelizer](benchmark::State& state) { benchMethod(state, bench, one, voxelizer); });
+                    addBenchmark(one.name,
+                                 [&bench, one, voxelizer](benchmark::State& state) { benchMethod(state, bench, one, voxelizer); });
                 }
             }
             const std::pair<const char*, NativeLine> lines[] = {{"native_separating_axis", native::voxelizeSeparatingAxis},
@@ -332,7 +311,7 @@ void addAll(Bench& bench, const std::vector<Input>& meshes, bool withPeers) {
                 bench.judgeLater(group, one.name, [line = line](Bench& b, const Bench::Loaded& loaded, const Grid& grid) {
                     return nativeBits(line, b, loaded, grid);
                 });
-                add(one.name, [&bench, one, line = line](benchmark::State& state) { benchNative(state, bench, one, line); });
+                addBenchmark(one.name, [&bench, one, line = line](benchmark::State& state) { benchNative(state, bench, one, line); });
             }
             for (const peers::Peer& peer : peers::installed(kFamily == Family::solidVoxels)) {
                 if (!withPeers || resolution > peer.finest) continue;
@@ -343,7 +322,7 @@ void addAll(Bench& bench, const std::vector<Input>& meshes, bool withPeers) {
                     return hostBits(bits, grid);
                 });
                 // To tens of seconds a call, and at least ten times that of a method: once shows which is the faster.
-                add(one.name, [&bench, one, peer](benchmark::State& state) { benchPeer(state, bench, one, peer); })
+                addBenchmark(one.name, [&bench, one, peer](benchmark::State& state) { benchPeer(state, bench, one, peer); })
                     ->Iterations(1)
                     ->Repetitions(1);
             }
@@ -354,27 +333,15 @@ void addAll(Bench& bench, const std::vector<Input>& meshes, bool withPeers) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    const bool timesOnly = takeFlag(argc, argv, "--times_only"), withoutPeers = takeFlag(argc, argv, "--no_peers");
     // Both sides in turns, medians of five, unless told otherwise.
-    std::vector<std::string> words{argv[0], "--benchmark_repetitions=5", "--benchmark_enable_random_interleaving=true",
-                                   "--benchmark_report_aggregates_only=true", "--benchmark_min_time=0.1"};
-    words.insert(words.end(), argv + 1, argv + argc);
-    const bool timesOnly = std::erase(words, "--times_only") != 0, withoutPeers = std::erase(words, "--no_peers") != 0;
-    std::vector<char*> arguments;
-    for (std::string& word : words) arguments.push_back(word.data());
-    int count = static_cast<int>(arguments.size());
-    benchmark::Initialize(&count, arguments.data());
-    if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 2;
-    try {
-        Bench bench(timesOnly);
-        const std::vector<Input> meshes = inputs();
-        addAll(bench, meshes, !withoutPeers);
-        addMachineContext(bench.deviceInfo());
-        benchmark::AddCustomContext("copyGBs", std::to_string(bench.copyBandwidth * 1e-9));
-        benchmark::RunSpecifiedBenchmarks();
-        benchmark::Shutdown();
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "%s\n", error.what());
-        return 1;
-    }
-    return 0;
+    return benchMain(argc, argv,
+                     {"--benchmark_repetitions=5", "--benchmark_enable_random_interleaving=true", "--benchmark_report_aggregates_only=true",
+                      "--benchmark_min_time=0.1"},
+                     [&](Queue& queue) {
+                         static Bench bench(queue, timesOnly);
+                         static const std::vector<Input> meshes = inputs();
+                         addAll(bench, meshes, !withoutPeers);
+                         benchmark::AddCustomContext("copyGBs", std::to_string(bench.copyBandwidth * 1e-9));
+                     });
 }

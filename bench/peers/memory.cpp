@@ -5,20 +5,15 @@
 #include <benchmark/benchmark.h>
 #include <nanovdb/util/OpenToNanoVDB.h>
 #include <openvdb/openvdb.h>
-#include <vitrail/io/load.h>
-#include <vitrail/scene/shapes.h>
 #include <vitrail/voxelize/conservative.h>
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
 #include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
-#include "context.h"
+#include "inputs.h"
 
 namespace {
 
@@ -72,17 +67,12 @@ std::uint64_t denseBytes(const Voxels& voxels) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (!initialize(argc, argv, {})) return 2;
-    try {
+    return benchMain(argc, argv, {}, [](Queue& queue) {
         openvdb::initialize();
-        Device device = Device::select();
-        Queue queue(device);
-        std::vector<std::pair<std::string, DeviceMesh>> meshes;
+        static std::vector<std::pair<std::string, DeviceMesh>> meshes;
         meshes.emplace_back("torus", DeviceMesh(queue, makeShape("torus")));
-        if (const char* folder = std::getenv("VITRAIL_DATA")) {
-            const auto path = std::filesystem::path(folder) / "meshes/dragon_vrip_res2.ply";
-            if (std::filesystem::exists(path)) meshes.emplace_back(path.stem().string(), DeviceMesh(queue, load(path)));
-        }
+        if (const auto path = dataMesh("meshes/dragon_vrip_res2.ply"))
+            meshes.emplace_back(path->stem().string(), DeviceMesh(queue, load(*path)));
         const std::tuple<const char*, Storage, std::uint64_t (*)(const Voxels&)> forms[] = {{"dense", Storage::dense, ourBytes},
                                                                                             {"bricks", Storage::bricks, ourBytes},
                                                                                             {"nanovdb_index", Storage::dense, indexBytes},
@@ -90,11 +80,10 @@ int main(int argc, char** argv) {
                                                                                             {"nanovdb_floats", Storage::dense, floatBytes},
                                                                                             {"rgba32f", Storage::dense, denseBytes}};
         for (const auto& [name, mesh] : meshes)
-            for (const auto& [form, storage, bytesOf] : forms) {
-                const std::string title = name + "/" + std::to_string(kResolution) + "/" + form;
+            for (const auto& [form, storage, bytesOf] : forms)
                 benchmark::RegisterBenchmark(
-                    title.c_str(),
-                    [&, storage = storage, bytesOf = bytesOf](benchmark::State& state) {
+                    (name + "/" + std::to_string(kResolution) + "/" + form).c_str(),
+                    [&queue, &mesh = mesh, storage = storage, bytesOf = bytesOf](benchmark::State& state) {
                         const Voxels voxels = makeVoxels(queue, mesh, Grid::fit(mesh.bounds(), kResolution), storage);
                         std::uint64_t bytes = 0;
                         for (auto _ : state) bytes = bytesOf(voxels);
@@ -104,13 +93,5 @@ int main(int argc, char** argv) {
                     })
                     ->Iterations(1)
                     ->Unit(benchmark::kMillisecond);
-            }
-        addMachineContext(device.info());
-        benchmark::RunSpecifiedBenchmarks();
-        benchmark::Shutdown();
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "%s\n", error.what());
-        return 1;
-    }
-    return 0;
+    });
 }

@@ -4,11 +4,9 @@
     frames.py out/bench/frames.json [-o out/bench/frames.svg]
 """
 
-import argparse
-
 import records
 from plot import COLOURS, MARKERS, NullLocator, plt
-from slicemap import number, read, table
+from tables import number, opened, table
 
 STABLE = 0.99
 METHODS = ("planes", "exact")
@@ -40,12 +38,7 @@ def crossings(meshes):
 
 
 def main():
-    parser = argparse.ArgumentParser(description="tables and chart of bench_frames")
-    parser.add_argument("file", help="its JSON")
-    parser.add_argument("-o", "--output", help="OUT.svg or OUT.png")
-    options = parser.parse_args()
-    found, machine = read([options.file])
-    print(records.machine_text(machine))
+    options, found, machine = opened("tables and chart of bench_frames")
     meshes = lines_of(found)
     table(
         "Frames: ms and rates",

@@ -4,11 +4,9 @@
     shadow.py out/bench/shadow.json [-o out/bench/shadow.svg]
 """
 
-import argparse
-
 import records
 from plot import COLOURS, MARKERS, FuncFormatter, LogLocator, NullLocator, plt
-from slicemap import read, table
+from tables import opened, table
 
 SCENES = {"tree": "A tree, leaves let a part through", "glass_knot": "A knot of tinted glass"}
 
@@ -26,12 +24,7 @@ def lines_of(found, scene):
 
 
 def main():
-    parser = argparse.ArgumentParser(description="chart and tables of bench_shadow")
-    parser.add_argument("file", help="its JSON")
-    parser.add_argument("-o", "--output", help="OUT.svg or OUT.png")
-    options = parser.parse_args()
-    found, machine = read([options.file])
-    print(records.machine_text(machine))
+    options, found, machine = opened("chart and tables of bench_shadow")
     rows = []
     for scene in SCENES:
         for label, points in lines_of(found, scene).items():

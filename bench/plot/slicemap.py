@@ -4,13 +4,12 @@
     slicemap.py out/bench/slicemap.json [-o out/bench/slicemap.svg]
 """
 
-import argparse
-import json
 import math
 import statistics
 
 import records
 from plot import COLOURS, MARKERS, FuncFormatter, LogLocator, NullLocator, plt
+from tables import number, opened, table
 
 # Chang et al. 2013, Table 1, ms at 128, 256 and 512 cubed: model and triangles, theirs, a pass a slice; and what stands in here. The Box row
 # repeats the Teapot's figures, and the last one is printed as 2.7.
@@ -26,37 +25,6 @@ CHANG = (
     ("Dragon", 871414, (11.8, 14.7, 24.9), (675, 1350, 2700), "dragon_vrip_res2+1"),
 )
 RESOLUTIONS = (128, 256, 512)
-
-
-def read(files):
-    """Records by name, medians where there are some; of several files the last one that has it."""
-    found, machine = {}, None
-    for name in files:
-        with open(name, encoding="utf-8") as file:
-            document = json.load(file)
-        _add(document, found)
-        machine = machine or {key: document["context"][key] for key in ("device", "compiler", "version", "commit") if key in document["context"]}
-    return found, machine
-
-
-def _add(document, found):
-    for one in sorted(document["benchmarks"], key=lambda b: b.get("aggregate_name") == "median"):
-        if one.get("error_occurred") or one.get("aggregate_name", "median") != "median":
-            continue
-        key = "/".join(part for part in one["run_name"].split("/") if part != "manual_time" and ":" not in part)
-        found[key] = one
-
-
-def number(value):
-    return f"{value:.3g}" if value < 1000 else f"{value:.0f}"
-
-
-def table(title, head, rows):
-    if not rows:
-        return
-    print(f"\n{title}\n\n| " + " | ".join(head) + " |\n|" + "---|" * len(head))
-    for row in rows:
-        print("| " + " | ".join(row) + " |")
 
 
 def series(found, kind):
@@ -171,14 +139,7 @@ def draw(found, machine, output):
 
 
 def main():
-    parser = argparse.ArgumentParser(description="tables and chart of bench_slicemap")
-    parser.add_argument("files", nargs="+", help="its JSON, whole or in parts")
-    parser.add_argument("-o", "--output", help="OUT.svg or OUT.png")
-    options = parser.parse_args()
-    found, machine = read(options.files)
-    if not found:
-        raise SystemExit(f"{', '.join(options.files)}: no measurement in it")
-    print(records.machine_text(machine))
+    options, found, machine = opened("tables and chart of bench_slicemap")
     print_sweeps(found)
     print_views(found)
     print_local(found)

@@ -1,11 +1,10 @@
 """bench/plot/sweeps.py: errors along what provokes them, a panel and lines of a table a sweep: what the scripts of stability share."""
 
-import argparse
 from typing import NamedTuple
 
 import records
 from plot import COLOURS, MARKERS, FuncFormatter, NullLocator, plt
-from slicemap import read, table
+from tables import opened, table
 
 
 class Sweep(NamedTuple):
@@ -30,12 +29,7 @@ def points_of(found, name, sweep, methods):
 
 def main(program, title, sweeps, methods, judges):
     """`sweeps`: name -> Sweep; `methods`: in the order of colours; `judges`: those of them that others are held against, dashed."""
-    parser = argparse.ArgumentParser(description=f"chart and bounds of {program}")
-    parser.add_argument("file", help="its JSON")
-    parser.add_argument("-o", "--output", help="OUT.svg or OUT.png")
-    options = parser.parse_args()
-    found, machine = read([options.file])
-    print(records.machine_text(machine))
+    options, found, machine = opened(f"chart and bounds of {program}")
     rows = []
     for name, sweep in sweeps.items():
         for method, points in points_of(found, name, sweep, methods).items():

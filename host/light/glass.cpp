@@ -7,42 +7,13 @@
 #include "light/ends.h"
 #include "light/march.h"
 #include "light/surroundings.h"
-#include "voxelize/prepare.h"
+#include "voxelize/options.h"
 
 namespace vitrail {
 inline namespace v0 {
 
-namespace {
-
-/// The alternative of that name, in `method`.
-template <std::size_t I = 0>
-bool choose(std::string_view name, GlassMethod& method) {
-    if constexpr (I == std::variant_size_v<GlassMethod>) {
-        return false;
-    } else {
-        if (name != std::variant_alternative_t<I, GlassMethod>::name) return choose<I + 1>(name, method);
-        method.emplace<I>();
-        return true;
-    }
-}
-
-}  // namespace
-
 GlassMethod glassByName(std::string_view name, std::span<const std::string> options) {
-    GlassMethod method;
-    if (!choose(name, method)) {
-        std::string known;
-        for (const Method& row : methods())
-            if (row.family == Family::glass) known += (known.empty() ? "" : ", ") + std::string(row.name);
-        throw Error(ErrorCode::badOption, {"there is no glass method \"" + std::string(name) + "\"", "", "", "one of " + known});
-    }
-    std::visit(
-        [&](auto& one) {
-            detail::setOptions(one, options);
-            detail::checkOptions(one);
-        },
-        method);
-    return method;
+    return detail::methodByName<GlassMethod>("glass method", name, options, [](const Method& row) { return row.family == Family::glass; });
 }
 
 namespace {

@@ -6,27 +6,12 @@
 #include "light/march.h"
 #include "light/shadow_map.h"
 #include "light/surroundings.h"
-#include "voxelize/prepare.h"
+#include "voxelize/options.h"
 
 namespace vitrail {
 inline namespace v0 {
 
 namespace {
-
-template <std::size_t i = 0>
-ShadowMethod called(std::string_view name) {
-    if constexpr (i < std::variant_size_v<ShadowMethod>) {
-        using One = std::variant_alternative_t<i, ShadowMethod>;
-        if (name == One::name) return One{};
-        return called<i + 1>(name);
-    } else {
-        std::string known;
-        for (const Method& row : methods())
-            if (row.family == Family::shadow || row.name == Planes::name || row.name == Exact::name)
-                known += (known.empty() ? "" : ", ") + std::string(row.name);
-        throw Error(ErrorCode::badOption, {"there is no shadow method \"" + std::string(name) + "\"", "", "", "one of " + known});
-    }
-}
 
 /// Rays through the scene's own voxels.
 Image byRays(Queue& queue, const Scene& scene, const Camera& camera, const Shadow& effect, const GlassMethod& method) {
@@ -75,14 +60,9 @@ Image byMap(Queue& queue, const Scene& scene, const Camera& camera, const Shadow
 }  // namespace
 
 ShadowMethod shadowByName(std::string_view name, std::span<const std::string> options) {
-    ShadowMethod method = called(name);
-    std::visit(
-        [&](auto& one) {
-            detail::setOptions(one, options);
-            detail::checkOptions(one);
-        },
-        method);
-    return method;
+    return detail::methodByName<ShadowMethod>("shadow method", name, options, [](const Method& row) {
+        return row.family == Family::shadow || row.name == Planes::name || row.name == Exact::name;
+    });
 }
 
 Image shade(Queue& queue, const Scene& scene, const Camera& camera, const Shadow& effect) {

@@ -221,26 +221,36 @@ static inline uint glass_follow(Rays* rays, Crossing hit, float way, bool main, 
     return path->march.steps >= volume->bound ? VITRAIL_RAY_BOUNDED : deeper ? VITRAIL_RAY_LOST : VITRAIL_RAY_LEFT;
 }
 
-// Follows a ray that stands on its first hit, `way` world units from the camera, and those that split off, to their ends. Told are fate and
-// events of the main ray, which crosses where it can.
-static void glass_trace(const Volume* volume, Crossing hit, float way, float3 direction, bool mirror, int splits, Ends* ends, uint* fate,
-                        uint* events, uint sample) {
+// Follows the ray of a pixel of the G-buffer, and those that split off, to their ends. Returns the fate of the main ray, which crosses where
+// it can; `events`: how often it did.
+static inline uint glass_pixel(const Volume* volume, const vitrail_CameraDesc* camera, global const uint* nearest, size_t pixel,
+                               bool mirror, int splits, Ends* ends, uint* events) {
+    float3 o, d;
+    Crossing hit;
+    float way;
+    ends->count = 0;
+    *events = 0u;
+    if (!march_first(volume, camera, nearest, pixel, &o, &d, &hit, &way)) {
+        ends_add(ends, (float3)(1.0f), to_voxel(volume->grid, o), d, &volume->around, false);
+        return VITRAIL_RAY_MISSED;
+    }
     Rays rays;
     rays.volume = volume;
     rays.mirror = mirror;
     rays.reflects = mirror && splits > 0;
     rays.splits = splits;
-    rays.sample = sample;
+    rays.sample = (uint)pixel;
     rays.waits = 0;
     rays.ends = ends;
-    Path path = glass_begin(volume, direction, &hit, &way);
-    for (bool main = true;; main = false) {
+    Path path = glass_begin(volume, d, &hit, &way);
+    uint fate = VITRAIL_RAY_MISSED;
+    for (bool main = true;; main = false) {  // followed in one place, so that the march is compiled once
         const uint how = glass_follow(&rays, hit, way, main, &path);
         if (main) {
-            *fate = how;
+            fate = how;
             *events = path.events;
         }
-        if (rays.waits == 0) return;
+        if (rays.waits == 0) return fate;
         path = rays.waiting[--rays.waits];
     }
 }
@@ -253,16 +263,9 @@ kernel void glass_shade(MARCH_PARAMETERS, const vitrail_LightDesc light, global 
     const float width = 2.0f * camera.up.w / (float)camera.height;  // of a pixel at distance 1; the ground's tiles are filtered by it
     FOR_RANGE(i, count, perItem) {
         const size_t pixel = first + i;
-        float3 o, d;
-        Crossing hit;
-        float way;
         Ends ends;
-        ends.count = 0;
-        uint fate = VITRAIL_RAY_MISSED, events = 0u;
-        if (march_first(&volume, &camera, nearest, pixel, &o, &d, &hit, &way))
-            glass_trace(&volume, hit, way, d, true, splits, &ends, &fate, &events, (uint)pixel);
-        else
-            ends_add(&ends, (float3)(1.0f), to_voxel(&grid, o), d, &volume.around, false);
+        uint events;
+        const uint fate = glass_pixel(&volume, &camera, nearest, pixel, true, splits, &ends, &events);
         if (fate == VITRAIL_RAY_LOST) atomic_inc(status + STATUS_LOST);
         if (fate == VITRAIL_RAY_BOUNDED) atomic_inc(status + STATUS_BOUNDED);
         float3 seen = (float3)(0.0f);
@@ -278,16 +281,9 @@ kernel void glass_ends(MARCH_PARAMETERS, global vitrail_RayEnd* rays, ulong firs
     const Volume volume = MARCH_VOLUME;
     FOR_RANGE(i, count, perItem) {
         const size_t pixel = first + i;
-        float3 o, d;
-        Crossing hit;
-        float way;
         Ends ends;
-        ends.count = 0;
-        uint fate = VITRAIL_RAY_MISSED, events = 0u;
-        if (march_first(&volume, &camera, nearest, pixel, &o, &d, &hit, &way))
-            glass_trace(&volume, hit, way, d, false, 0, &ends, &fate, &events, 0u);
-        else
-            ends_add(&ends, (float3)(1.0f), to_voxel(&grid, o), d, &volume.around, false);
+        uint events;
+        const uint fate = glass_pixel(&volume, &camera, nearest, pixel, false, 0, &ends, &events);
         const End end = ends.end[0];
         const vitrail_RayEnd out = {
             {end.direction.x, end.direction.y, end.direction.z}, fate, {end.weight.x, end.weight.y, end.weight.z}, events};

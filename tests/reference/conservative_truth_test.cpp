@@ -8,10 +8,9 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <set>
-#include <tuple>
 #include <vector>
 
+#include "tests/support/cells.h"
 #include "tests/support/closed.h"
 
 namespace vitrail {
@@ -20,39 +19,11 @@ namespace {
 using reference::conservative;
 using reference::kTie;
 using reference::Truth;
+using test::Cells;
+using test::cellsOf;
+using test::meetsByClipping;
 using test::triangles;
-using Cells = std::set<std::tuple<unsigned, unsigned, unsigned>>;
-
-Grid unitGrid(Uint3 size) { return Grid::box(Float3(0), 1.0f, size); }
-
-Cells cellsOf(const VoxelBits& bits) {
-    Cells cells;
-    const Uint3 size = bits.grid.size();
-    for (unsigned z = 0; z < size.z; ++z)
-        for (unsigned y = 0; y < size.y; ++y)
-            for (unsigned x = 0; x < size.x; ++x)
-                if (bits.at(x, y, z)) cells.insert({x, y, z});
-    return cells;
-}
-
-/// Whether the triangle meets the box, by clipping it against the six sides (Sutherland & Hodgman 1974): shares nothing with the
-/// separating axes.
-bool meetsByClipping(const std::array<Double3, 3>& triangle, Double3 low, Double3 high) {
-    std::vector<Double3> polygon(triangle.begin(), triangle.end()), next;
-    for (int axis = 0; axis < 3; ++axis)
-        for (const bool upper : {false, true}) {
-            const auto inside = [&](const Double3& p) { return upper ? high[axis] - p[axis] : p[axis] - low[axis]; };
-            next.clear();
-            for (std::size_t i = 0; i < polygon.size(); ++i) {
-                const Double3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-                const double da = inside(a), db = inside(b);
-                if (da >= 0) next.push_back(a);
-                if ((da >= 0) != (db >= 0)) next.push_back(a + (b - a) * (da / (da - db)));
-            }
-            polygon.swap(next);
-        }
-    return !polygon.empty();
-}
+using test::unitGrid;
 
 TEST(ConservativeTruth, ATriangleWithinOneCellMarksThatCell) {
     const Truth truth = conservative(triangles({{1.2f, 2.3f, 3.4f}, {1.8f, 2.4f, 3.5f}, {1.4f, 2.7f, 3.6f}}), unitGrid({4, 4, 5}));

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/support/cases.h"
+#include "tests/support/cells.h"
 #include "tests/support/closed.h"
 
 namespace vitrail {
@@ -16,8 +17,7 @@ namespace {
 
 using reference::sampled;
 using test::triangles;
-
-Grid unitGrid(Uint3 size) { return Grid::box(Float3(0), 1.0f, size); }
+using test::unitGrid;
 
 /// How many triangles each column meets within the grid, each scanned alone.
 std::vector<unsigned> crossings(const Mesh& mesh, const Grid& grid) {

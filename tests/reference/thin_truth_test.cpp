@@ -5,10 +5,9 @@
 
 #include <algorithm>
 #include <iterator>
-#include <set>
-#include <tuple>
 #include <utility>
 
+#include "tests/support/cells.h"
 #include "tests/support/closed.h"
 
 namespace vitrail {
@@ -17,20 +16,10 @@ namespace {
 using reference::kTie;
 using reference::thin;
 using reference::Truth;
+using test::Cells;
+using test::cellsOf;
 using test::triangles;
-using Cells = std::set<std::tuple<unsigned, unsigned, unsigned>>;
-
-Grid unitGrid(Uint3 size) { return Grid::box(Float3(0), 1.0f, size); }
-
-Cells cellsOf(const VoxelBits& bits) {
-    Cells cells;
-    const Uint3 size = bits.grid.size();
-    for (unsigned z = 0; z < size.z; ++z)
-        for (unsigned y = 0; y < size.y; ++y)
-            for (unsigned x = 0; x < size.x; ++x)
-                if (bits.at(x, y, z)) cells.insert({x, y, z});
-    return cells;
-}
+using test::unitGrid;
 
 bool isSubset(const VoxelBits& part, const VoxelBits& whole) {
     for (std::size_t w = 0; w < part.words.size(); ++w)

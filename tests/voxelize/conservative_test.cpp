@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "tests/support/cases.h"
+#include "tests/support/cells.h"
 #include "tests/support/closed.h"
 #include "tests/support/data.h"
 #include "tests/support/device.h"
@@ -69,23 +70,10 @@ TEST(Conservative, IsTheTruthOnScans) {
 double distanceTo(const Mesh& mesh, const Grid& grid, Uint3 cell, double most) {
     const auto meets = [&](double margin) {
         const Double3 low = Double3(cell) - margin, high = Double3(cell) + 1.0 + margin;
-        std::vector<Double3> polygon, next;
         for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
-            polygon.clear();
-            for (int k = 0; k < 3; ++k) polygon.push_back(grid.toVoxel(mesh.positions[mesh.indices[3 * t + k]]));
-            for (int axis = 0; axis < 3 && !polygon.empty(); ++axis)
-                for (const bool upper : {false, true}) {
-                    const auto inside = [&](const Double3& p) { return upper ? high[axis] - p[axis] : p[axis] - low[axis]; };
-                    next.clear();
-                    for (std::size_t i = 0; i < polygon.size(); ++i) {
-                        const Double3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-                        const double da = inside(a), db = inside(b);
-                        if (da >= 0) next.push_back(a);
-                        if ((da >= 0) != (db >= 0)) next.push_back(a + (b - a) * (da / (da - db)));
-                    }
-                    polygon.swap(next);
-                }
-            if (!polygon.empty()) return true;
+            std::array<Double3, 3> triangle;
+            for (std::size_t k = 0; k < 3; ++k) triangle[k] = grid.toVoxel(mesh.positions[mesh.indices[3 * t + k]]);
+            if (test::meetsByClipping(triangle, low, high)) return true;
         }
         return false;
     };
