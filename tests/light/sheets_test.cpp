@@ -116,6 +116,23 @@ TEST(Sheets, CastTheShadowOfTheirLayers) {
         EXPECT_NEAR(arriving(scene, method), 0.1f, 1e-3f);
 }
 
+// Seen on its dark side a wall does not count itself, and holds nothing that the light would have gone through.
+TEST(Sheets, AreNoBodiesOnTheirDarkSide) {
+    Scene scene;
+    Material tinted = wall(0.5f);
+    tinted.attenuationDistance = 0.01f;
+    tinted.attenuationColour = Float3(0.1f);
+    addSquare(scene, 0, 1, true, tinted);
+    addSquare(scene, 0.5f, 0.1f, false, wall(0.2f));  // so that the grid goes on behind it
+    scene.light.toLight = Float3(0, 0, 1);
+    Camera camera = straight(1, 0.1f);
+    camera.eye = -camera.eye;
+    for (const ShadowMethod& method : {ShadowMethod(Exact{.resolution = 32}), ShadowMethod(Planes{.resolution = 32})}) {
+        const Image image = shade(queue(), scene, camera, Shadow{.method = method});
+        EXPECT_NEAR(image.picture().pixels[0].x, 0.2f, 1e-3f);
+    }
+}
+
 // Twenty veils let through what they leave, and nothing comes through what is opaque above them.
 TEST(Sheets, AreNotTooManyForAShadow) {
     Scene scene;
