@@ -93,6 +93,19 @@ kernel void one_ends(IMAGE_PARAMETERS, ulong count, uint perItem) {
 
 #define TWO_THIN 3  // cells from the surface within which the glass begins, or is thinner than one
 
+// The share of the cells around a point that is inside, by their distance to it.
+static inline float two_inside(const View* solid, float3 p) {
+    const float3 low = floor(p - 0.5f), part = p - 0.5f - low;
+    const int x = (int)low.x, y = (int)low.y, z = (int)low.z;
+    float share = 0.0f;
+    for (int k = 0; k < 8; ++k) {
+        const int i = k & 1, j = (k >> 1) & 1, l = k >> 2;
+        if (view_occupied(solid, x + i, y + j, z + l))
+            share += (i ? part.x : 1.0f - part.x) * (j ? part.y : 1.0f - part.y) * (l ? part.z : 1.0f - part.z);
+    }
+    return share;
+}
+
 // Cells along the incident ray until the first that is not inside; `p`: on the surface.
 static inline float two_thickness(const View* solid, float3 p, float3 d) {
     const float3 a = fabs(d);
@@ -102,15 +115,19 @@ static inline float two_thickness(const View* solid, float3 p, float3 d) {
     for (int k = 0; k < most; ++k) {
         const float3 at = p + d * (step * ((float)k + 0.5f));
         const bool now = view_occupied(solid, view_cell(at.x), view_cell(at.y), view_cell(at.z));
-        if (!now && (inside || k == TWO_THIN)) return inside ? (float)k * step : 0.5f * step;
+        if (!now && (inside || k == TWO_THIN)) {
+            if (!inside) return 0.5f * step;
+            const float before = two_inside(solid, at - d * step), after = two_inside(solid, at);
+            return ((float)k - 0.5f + (before > 0.5f && after < 0.5f ? (before - 0.5f) / (before - after) : 0.5f)) * step;
+        }
         inside = inside || now;
     }
     return 0.0f;
 }
 
-// The normal of the surface voxel of p's column nearest to p by which a ray can leave.
-static inline bool two_normal(const View* surface, float3 p, float3 d, float3* normal) {
-    const int x = view_cell(p.x), y = view_cell(p.y), z = view_cell(p.z), most = (int)surface->grid->size.z;
+// The normal of the surface voxel of a column nearest to slice z by which a ray can leave.
+static inline bool two_column(const View* surface, int x, int y, int z, float3 d, float3* normal) {
+    const int most = (int)surface->grid->size.z;
     for (int k = 0; k < most; ++k)
         for (int side = 0; side < (k == 0 ? 1 : 2); ++side) {
             const int at = side == 0 ? z + k : z - k;
@@ -119,6 +136,21 @@ static inline bool two_normal(const View* surface, float3 p, float3 d, float3* n
             if (dot(*normal, d) > 0.0f) return true;
         }
     return false;
+}
+
+// Those of the four columns around p, by their distance.
+static inline bool two_normal(const View* surface, float3 p, float3 d, float3* normal) {
+    const float2 low = floor(p.xy - 0.5f), part = p.xy - 0.5f - low;
+    float3 sum = (float3)(0.0f);
+    for (int k = 0; k < 4; ++k) {
+        const int i = k & 1, j = k >> 1;
+        float3 n;
+        if (two_column(surface, (int)low.x + i, (int)low.y + j, view_cell(p.z), d, &n))
+            sum += n * ((i ? part.x : 1.0f - part.x) * (j ? part.y : 1.0f - part.y));
+    }
+    const float length = sqrt(dot(sum, sum));
+    *normal = sum / length;
+    return length > 0.0f;
 }
 
 kernel void two_voxels_ends(IMAGE_PARAMETERS, const vitrail_GridDesc grid, global const uint* words, global const uint2* bricks,

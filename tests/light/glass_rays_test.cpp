@@ -131,7 +131,7 @@ TEST(GlassRays, FlickerNoMoreThanTheReference) {
         // The second surface of Two is looked up where a thickness in whole voxels, or in pixels, leads: what changes there changes at once.
         const std::pair<GlassMethod, double> limits[] = {{Planes{.resolution = 96}, 1.5},
                                                          {Exact{.resolution = 48}, 1.5},
-                                                         {Two{.resolution = 96}, 3},
+                                                         {Two{.resolution = 96}, 2.25},
                                                          {Two{.thickness = Two::Thickness::image}, 2}};
         for (const auto& [method, most] : limits)
             EXPECT_LE(turnedShare(glassRays(queue(), before, camera, method).ends, glassRays(queue(), after, camera, method).ends),
