@@ -51,8 +51,9 @@ struct One {
 
 /// Two-surface refraction (Chang et al. 2013, section 5.1, Fig. 5): bent at the first surface, from the triangles, and once more after the
 /// thickness d of the glass along the *incident* ray, measured along the refracted one: P2 = P1 + d T1.
-/// voxels: `solid` and `sampled` columns along the view; d until the first cell that is not inside; the normal is the mean one of the surface
-/// voxel nearest to P2 along the view that the ray can leave by (our reading of "projected into the voxel space").
+/// voxels: `solid` and `sampled` columns along the view; d until the first cell that is not inside, to a part of a cell by the cells around;
+/// the normal is, of the four columns around P2 by their distance, the mean one of the surface voxel nearest to P2 along the view that the ray
+/// can leave by (our reading of "projected into the voxel space").
 /// image: d to the nearest back face at the pixel, and the normal of the back face that P2 projects to (Wyman 2005, without his precomputed
 /// thickness along the normal). Where there is none, or all is reflected, the ray goes on as it is.
 struct Two {
