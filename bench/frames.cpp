@@ -68,20 +68,9 @@ std::vector<Input> inputs() {
     return all;
 }
 
-struct Rates {
-    double correct = 0, stableCorrect = 0, events = 0;
-
-    void add(const std::vector<vitrail_RayEnd>& ends, const Truth& truth, unsigned k) {
-        const RayErrors one = compareRays(ends, truth.ends[k], truth.shifted[k]);
-        correct += one.correct / kViews;
-        stableCorrect += one.stableCorrect / kViews;
-        for (const vitrail_RayEnd& end : ends) events += end.events / static_cast<double>(kViews);
-    }
-};
-
 /// frame(i) returns milliseconds of build and of rays.
 template <class Frame>
-void run(benchmark::State& state, const Input& input, const Rates& rates, Frame&& frame) {
+void run(benchmark::State& state, const Input& input, const Judged& rates, Frame&& frame) {
     unsigned i = 0;
     double buildMs = 0, traceMs = 0;
     for (unsigned k = 0; k < kPhases; ++k) frame(i++);  // builds the programs and touches the memory
@@ -95,15 +84,14 @@ void run(benchmark::State& state, const Input& input, const Rates& rates, Frame&
     state.counters["buildMs"] = buildMs / frames;
     state.counters["traceMs"] = traceMs / frames;
     state.counters["raysPerSecond"] = (kPixels * kPixels + rates.events) / (traceMs / frames * 1e-3);
-    state.counters["correct"] = rates.correct;
-    state.counters["stableCorrect"] = rates.stableCorrect;
+    state.counters["correct"] = rates.mean.correct;
+    state.counters["stableCorrect"] = rates.mean.stableCorrect;
     state.counters["triangles"] = static_cast<double>(input.scene.mesh.triangleCount());
 }
 
-void benchVoxels(benchmark::State& state, Queue& queue, const Input& input, const Truth& truth, const GlassMethod& method,
-                 std::uint32_t resolution) {
-    Rates rates;
-    for (unsigned k = 0; k < kViews; ++k) rates.add(glassRays(queue, input.scene, view(input.scene, k), method).ends, truth, k);
+void benchVoxels(benchmark::State& state, Queue& queue, const std::string& name, const Input& input, const Truth& truth,
+                 const GlassMethod& method, std::uint32_t resolution) {
+    const Judged& rates = judged(name, truth, [&](unsigned k) { return glassRays(queue, input.scene, view(input.scene, k), method).ends; });
     Scene scene = input.scene;
     DeviceMesh mesh(queue, scene.mesh.view());
     const bool planes = std::holds_alternative<Planes>(method);
@@ -142,18 +130,17 @@ void benchVoxels(benchmark::State& state, Queue& queue, const Input& input, cons
 
 std::span<const float> floats(const std::vector<Float3>& v) { return {&v[0].x, 3 * v.size()}; }
 
-void benchEmbree(benchmark::State& state, const Input& input, const Truth& truth, native::EmbreeBuild how) {
+void benchEmbree(benchmark::State& state, const std::string& name, const Input& input, const Truth& truth, native::EmbreeBuild how) {
     const Mesh& mesh = input.scene.mesh;
     const Material& glass = input.scene.materials[0];
     const Float3 absorption = glass.absorption(), colour = glass.baseColour;
     native::EmbreeGlass tracer(floats(mesh.positions), mesh.indices, floats(mesh.normals), how);
     std::vector<vitrail_RayEnd> ends(kPixels * kPixels);
     const auto trace = [&](unsigned k) { tracer.trace(describe(view(input.scene, k)), kIndex, &absorption.x, &colour.x, ends); };
-    Rates rates;
-    for (unsigned k = 0; k < kViews; ++k) {
+    const Judged& rates = judged(name, truth, [&](unsigned k) {
         trace(k);
-        rates.add(ends, truth, k);
-    }
+        return ends;
+    });
     run(state, input, rates, [&](unsigned i) {
         tracer.setPositions(floats(input.moved[i % kPhases]));
         const auto start = std::chrono::steady_clock::now();
@@ -172,7 +159,7 @@ int main(int argc, char** argv) {
     return benchMain(
         argc, argv,
         {"--benchmark_repetitions=5", "--benchmark_enable_random_interleaving=true", "--benchmark_report_aggregates_only=true",
-         "--benchmark_min_time=0.5"},
+         "--benchmark_min_time=0.25"},
         [](Queue& queue) {
             static std::vector<Input> meshes = inputs();
             static std::map<std::string, Truth> truths;
@@ -184,17 +171,19 @@ int main(int argc, char** argv) {
                         const std::string size = std::to_string(resolution);
                         const std::vector<std::string> options = atResolution(row, size);
                         if (row.name != Planes::name && row.name != Exact::name) continue;
-                        addBenchmark(input.name + "/" + size + "/" + std::string(row.name),
-                                     [&queue, &input, truth, resolution, method = glassByName(row.name, options)](benchmark::State& state) {
-                                         benchVoxels(state, queue, input, truth(), method, resolution);
-                                     });
+                        const std::string name = input.name + "/" + size + "/" + std::string(row.name);
+                        addBenchmark(name,
+                                     [&queue, &input, name, truth, resolution, method = glassByName(row.name, options)](
+                                         benchmark::State& state) { benchVoxels(state, queue, name, input, truth(), method, resolution); });
                     }
                 const std::pair<const char*, native::EmbreeBuild> builds[] = {{"standard", native::EmbreeBuild::standard},
                                                                               {"dynamic", native::EmbreeBuild::dynamic},
                                                                               {"refit", native::EmbreeBuild::refit}};
-                for (const auto& [name, how] : builds)
-                    addBenchmark(input.name + "/0/embree_" + name,
-                                 [&input, truth, how](benchmark::State& state) { benchEmbree(state, input, truth(), how); });
+                for (const auto& [build, how] : builds) {
+                    const std::string name = input.name + "/0/embree_" + build;
+                    addBenchmark(name,
+                                 [&input, name, truth, how](benchmark::State& state) { benchEmbree(state, name, input, truth(), how); });
+                }
             }
         });
 }

@@ -55,22 +55,10 @@ std::vector<Input> inputs() {
     return all;
 }
 
-void bench(benchmark::State& state, Queue& queue, const Scene& scene, const Truth& truth, const GlassMethod& method) {
-    RayErrors mean;
-    double least = 1;
+void bench(benchmark::State& state, Queue& queue, const std::string& name, const Scene& scene, const Truth& truth,
+           const GlassMethod& method) {
+    const Judged& rates = judged(name, truth, [&](unsigned k) { return glassRays(queue, scene, view(scene, k), method).ends; });
     ImageReport report;
-    for (unsigned k = 0; k < kViews; ++k) {
-        const GlassRays rays = glassRays(queue, scene, view(scene, k), method);
-        const RayErrors one = compareRays(rays.ends, truth.ends[k], truth.shifted[k]);
-        mean.correct += one.correct / kViews;
-        mean.close += one.close / kViews;
-        mean.stableCorrect += one.stableCorrect / kViews;
-        mean.medianDegrees += one.medianDegrees / kViews;
-        mean.worstDegrees += one.worstDegrees / kViews;
-        mean.transmittanceMean += one.transmittanceMean / kViews;
-        mean.relativeMse += one.relativeMse / kViews;
-        least = std::min(least, one.correct);
-    }
     double wallMs = 0;
     unsigned frame = 0;
     for (auto _ : state) {
@@ -80,16 +68,16 @@ void bench(benchmark::State& state, Queue& queue, const Scene& scene, const Trut
         state.SetIterationTime(report.kernelMs * 1e-3);
     }
     state.counters["wallMs"] = wallMs / static_cast<double>(state.iterations());
-    state.counters["correct"] = mean.correct;
-    state.counters["correctLeast"] = least;
-    state.counters["stableCorrect"] = mean.stableCorrect;
-    state.counters["wrong"] = 1 - mean.correct;
-    state.counters["wrongStable"] = 1 - mean.stableCorrect;
-    state.counters["close"] = mean.close;
-    state.counters["medianDegrees"] = mean.medianDegrees;
-    state.counters["worstDegrees"] = mean.worstDegrees;
-    state.counters["transmittanceMean"] = mean.transmittanceMean;
-    state.counters["relativeMse"] = mean.relativeMse;
+    state.counters["correct"] = rates.mean.correct;
+    state.counters["correctLeast"] = rates.least;
+    state.counters["stableCorrect"] = rates.mean.stableCorrect;
+    state.counters["wrong"] = 1 - rates.mean.correct;
+    state.counters["wrongStable"] = 1 - rates.mean.stableCorrect;
+    state.counters["close"] = rates.mean.close;
+    state.counters["medianDegrees"] = rates.mean.medianDegrees;
+    state.counters["worstDegrees"] = rates.mean.worstDegrees;
+    state.counters["transmittanceMean"] = rates.mean.transmittanceMean;
+    state.counters["relativeMse"] = rates.mean.relativeMse;
     state.counters["referenceMs"] = truth.milliseconds;
     state.counters["occupied"] = static_cast<double>(report.occupied);
     state.counters["triangles"] = static_cast<double>(report.triangles);
@@ -259,11 +247,12 @@ int main(int argc, char** argv) {
                             if (options.empty() && std::string_view(resolution) != "256") continue;  // once
                             const std::string name =
                                 input.name + "/" + resolution + "/" + std::string(row.name) + (plain ? "" : std::string("/ior=") + index);
-                            addBenchmark(name, [&queue, &input, index, method = glassByName(row.name, options)](benchmark::State& state) {
-                                Scene scene = input.scene;
-                                scene.materials[0].indexOfRefraction = std::stof(index);
-                                bench(state, queue, scene, truths.try_emplace(input.name + index, scene).first->second, method);
-                            });
+                            addBenchmark(
+                                name, [&queue, &input, index, name, method = glassByName(row.name, options)](benchmark::State& state) {
+                                    Scene scene = input.scene;
+                                    scene.materials[0].indexOfRefraction = std::stof(index);
+                                    bench(state, queue, name, scene, truths.try_emplace(input.name + index, scene).first->second, method);
+                                });
                         }
         });
 }

@@ -1,10 +1,14 @@
 // bench/glass_truth.h: what the reference says of a scene of glass, from the views of measures.md.
 #pragma once
+#include <vitrail/metrics/rays.h>
 #include <vitrail/reference/glass.h>
 #include <vitrail/scene/scene.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <map>
+#include <string>
 #include <vector>
 
 constexpr unsigned kViews = 4;
@@ -30,3 +34,31 @@ struct Truth {
         }
     }
 };
+
+/// Means over the views; `least`: of the correct rates.
+struct Judged {
+    vitrail::RayErrors mean;
+    double least = 1, events = 0;
+};
+
+/// What rays(k), the ends of view k, are worth, found once for all calls of benchmark `name`.
+template <class Rays>
+const Judged& judged(const std::string& name, const Truth& truth, Rays&& rays) {
+    static std::map<std::string, Judged> all;
+    const auto [found, first] = all.try_emplace(name);
+    Judged& judged = found->second;
+    for (unsigned k = 0; first && k < kViews; ++k) {
+        const std::vector<vitrail_RayEnd> ends = rays(k);
+        const vitrail::RayErrors one = vitrail::compareRays(ends, truth.ends[k], truth.shifted[k]);
+        judged.mean.correct += one.correct / kViews;
+        judged.mean.close += one.close / kViews;
+        judged.mean.stableCorrect += one.stableCorrect / kViews;
+        judged.mean.medianDegrees += one.medianDegrees / kViews;
+        judged.mean.worstDegrees += one.worstDegrees / kViews;
+        judged.mean.transmittanceMean += one.transmittanceMean / kViews;
+        judged.mean.relativeMse += one.relativeMse / kViews;
+        judged.least = std::min(judged.least, one.correct);
+        for (const vitrail_RayEnd& end : ends) judged.events += end.events / static_cast<double>(kViews);
+    }
+    return judged;
+}

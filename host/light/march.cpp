@@ -172,37 +172,30 @@ MarchVolume marchVoxels(Call& call, const Scene& scene, const GlassMethod& metho
     if (std::holds_alternative<Exact>(method)) {
         VoxelLists lists = voxelizeLists(queue, mesh, grid);
         lists.voxels.mip();
-        return {grid,
-                std::move(mesh),
-                std::move(lists.voxels),
-                {},
-                {},
-                {},
-                std::move(lists.triangles),
-                std::move(lists.ends),
-                {},
-                std::move(materials),
-                std::move(texels),
-                voxelizing.record(),
-                bound};
+        return {.grid = grid,
+                .mesh = std::move(mesh),
+                .voxels = std::move(lists.voxels),
+                .triangles = std::move(lists.triangles),
+                .ends = std::move(lists.ends),
+                .materials = std::move(materials),
+                .texels = std::move(texels),
+                .voxelizing = voxelizing.record(),
+                .bound = bound};
     }
     // Bodies in one another are inside where even-odd has them outside.
     Voxels solid = several(scene.mesh) ? voxelize(queue, mesh, grid, SolidWinding{}) : voxelize(queue, mesh, grid, Solid{});
     SurfaceVoxels surface = voxelizeSurface(queue, mesh, grid, std::holds_alternative<Plane>(method));
     surface.voxels.mip();
-    return {grid,
-            std::move(mesh),
-            std::move(surface.voxels),
-            std::move(surface.surface),
-            std::move(surface.planes),
-            std::move(solid),
-            {},
-            {},
-            {},
-            std::move(materials),
-            std::move(texels),
-            voxelizing.record(),
-            bound};
+    return {.grid = grid,
+            .mesh = std::move(mesh),
+            .voxels = std::move(surface.voxels),
+            .surface = std::move(surface.surface),
+            .planes = std::move(surface.planes),
+            .solid = std::move(solid),
+            .materials = std::move(materials),
+            .texels = std::move(texels),
+            .voxelizing = voxelizing.record(),
+            .bound = bound};
 }
 
 MarchVolume marchVolume(Call& call, const Scene& scene, const Camera& camera, const GlassMethod& method) {

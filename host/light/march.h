@@ -23,17 +23,16 @@ struct MarchVolume {
     Grid grid;
     DeviceMesh mesh;
     Voxels voxels;
-    Buffer<vitrail_SurfaceVoxel> surface, planes;  // of Planes
-    std::optional<Voxels> solid;
-    Buffer<std::uint32_t> triangles, ends;  // of Exact
-    GBuffer gbuffer;
+    Buffer<vitrail_SurfaceVoxel> surface{}, planes{};  ///< of Planes
+    std::optional<Voxels> solid{};
+    Buffer<std::uint32_t> triangles{}, ends{};  ///< of Exact
+    GBuffer gbuffer{};
     Buffer<vitrail_MaterialDesc> materials;
     Buffer<std::uint32_t> texels;        ///< of all textures, RGBA of 8 bits; colours as their square roots
     std::shared_ptr<Record> voxelizing;  ///< what was launched for voxels, surface and solid
-    std::int32_t
-        bound;  ///< a walk crosses at most this many cells on four straight ways through the grid; a march past it is ended and counted
-    vitrail_Media around{};       ///< the camera
-    Buffer<std::uint16_t> edits;  ///< kernels/lib/edits.cl; empty: none
+    std::int32_t bound;                  ///< steps of a march, four straight ways through the grid; one that takes more is ended and counted
+    vitrail_Media around{};              ///< the camera
+    Buffer<std::uint16_t> edits{};       ///< kernels/lib/edits.cl; empty: none
     vitrail_uint4 editLow{}, editSize{};
 };
 
