@@ -5,13 +5,12 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include <vitrail/core/error.h>
-#include <vitrail/io/image.h>
 
 #include "io/gltf_document.h"
+#include "io/gltf_materials.h"
 #include "io/gltf_skin.h"
 #include "io/readers.h"
 #include "io/transform.h"
@@ -20,7 +19,6 @@ namespace vitrail::io_detail {
 
 namespace {
 
-using Json = nlohmann::json;
 using Attribute = GltfAttribute;
 
 // A Mesh counts its vertices and triangles in 32 bits.
@@ -31,12 +29,6 @@ struct Placed {
     std::size_t node, mesh, primitive;
 };
 
-/// Images that a material names, or -1.
-struct SurfaceTextures {
-    int transmission = -1, roughness = -1;
-    float metallic = 0;
-};
-
 class GltfReader : private GltfDocument {
 public:
     explicit GltfReader(const Source& source)
@@ -45,9 +37,9 @@ public:
     Scene read() {
         placeNodes();
         std::vector<Placed> placed = chooseScene();
-        readMaterials();
+        scene_.materials = materials_.read();
         assemble(placed);
-        if (!source_.meshOnly) readTextures();
+        if (!source_.meshOnly) materials_.readTextures(scene_);
         scene_.name = std::filesystem::path(source_.name).stem().string();
         scene_.mesh.name = scene_.name;
         for (const std::string& repair : scene_.mesh.repairs) warn(repair);
@@ -248,232 +240,6 @@ private:
         scene_.camera = camera;
     }
 
-    // ---- materials ----
-
-    double number(const tinygltf::ExtensionMap& extensions, const char* extension, const char* key, double otherwise) const {
-        const auto found = extensions.find(extension);
-        if (found == extensions.end() || !found->second.Has(key)) return otherwise;
-        const tinygltf::Value& value = found->second.Get(key);
-        return value.IsNumber() ? value.GetNumberAsDouble() : otherwise;
-    }
-
-    static bool hasMember(const tinygltf::ExtensionMap& extensions, const char* extension, const char* key) {
-        const auto found = extensions.find(extension);
-        return found != extensions.end() && found->second.Has(key);
-    }
-
-    float inRange(double value, double least, double most, const std::string& material, const char* what) {
-        if (value >= least && value <= most) return static_cast<float>(value);
-        const double nearest = value > most ? most : least;
-        warn("material " + material + ": " + what + " " + std::to_string(value) + " was moved to " + std::to_string(nearest));
-        return static_cast<float>(nearest);
-    }
-
-    void readMaterials() {
-        for (std::size_t i = 0; i < model_.materials.size(); ++i) scene_.materials.push_back(material(i));
-        baseTextures_.assign(scene_.materials.size(), -1);
-        texcoordSets_.assign(scene_.materials.size(), 0);
-        for (std::size_t i = 0; i < model_.materials.size(); ++i) readBaseTexture(i);
-        surfaceTextures_.assign(scene_.materials.size(), {});
-        for (std::size_t i = 0; i < model_.materials.size(); ++i) readSurfaceTextures(i);
-    }
-
-    Material material(std::size_t index) {
-        const tinygltf::Material& from = model_.materials[index];
-        const std::string called = from.name.empty() ? std::to_string(index) : inQuotes(from.name);
-        const tinygltf::ExtensionMap& extensions = from.extensions;
-        Material m;
-        m.name = from.name;
-        const auto& pbr = from.pbrMetallicRoughness;
-        if (pbr.baseColorFactor.size() == 4) {
-            for (int c = 0; c < 3; ++c) {
-                m.baseColour[c] = inRange(pbr.baseColorFactor[static_cast<std::size_t>(c)], 0, 1, called, "baseColorFactor");
-            }
-            m.alpha = inRange(pbr.baseColorFactor[3], 0, 1, called, "alpha");
-        } else {
-            m.baseColour = Float3(1.0f);
-        }
-        m.roughness = inRange(pbr.roughnessFactor, 0, 1, called, "roughnessFactor");
-        if (from.alphaMode == "MASK") {
-            m.alphaMode = AlphaMode::mask;
-        } else if (from.alphaMode == "BLEND") {
-            m.alphaMode = AlphaMode::blend;
-        } else if (!from.alphaMode.empty() && from.alphaMode != "OPAQUE") {
-            warn("material " + called + ": alphaMode " + inQuotes(from.alphaMode) + " was taken as OPAQUE");
-        }
-        m.alphaCutoff = inRange(from.alphaCutoff, 0, 1e30, called, "alphaCutoff");
-        m.doubleSided = from.doubleSided;
-        m.transmission =
-            inRange(number(extensions, "KHR_materials_transmission", "transmissionFactor", 0), 0, 1, called, "transmissionFactor");
-        m.indexOfRefraction = inRange(number(extensions, "KHR_materials_ior", "ior", 1.5), 1, 3, called, "ior");
-        readVolume(extensions, called, m);
-        readEmission(from, called, m);
-
-        // Metal lets nothing through; a texture of it is read with the others.
-        if (pbr.metallicRoughnessTexture.index < 0) m.transmission *= 1.0f - inRange(pbr.metallicFactor, 0, 1, called, "metallicFactor");
-        return m;
-    }
-
-    void readVolume(const tinygltf::ExtensionMap& extensions, const std::string& called, Material& m) {
-        constexpr const char* kVolume = "KHR_materials_volume";
-        m.thickness = inRange(number(extensions, kVolume, "thicknessFactor", 0), 0, 1e30, called, "thicknessFactor");
-        m.attenuationDistance = inRange(number(extensions, kVolume, "attenuationDistance", 0), 0, 3e38, called, "attenuationDistance");
-        if (!hasMember(extensions, kVolume, "attenuationColor")) return;
-        const tinygltf::Value& colour = extensions.at(kVolume).Get("attenuationColor");
-        for (int c = 0; c < 3; ++c) {
-            const tinygltf::Value* value = colour.IsArray() && colour.ArrayLen() == 3 ? &colour.Get(c) : nullptr;
-            if (value == nullptr || !value->IsNumber()) fail("attenuationColor is not three numbers", "materials " + called);
-            // Black would absorb everything at any distance; what is left of 1e-5 cannot be seen either.
-            m.attenuationColour[c] = inRange(value->GetNumberAsDouble(), 0, 1, called, "attenuationColor");
-            m.attenuationColour[c] = std::max(m.attenuationColour[c], 1e-5f);
-        }
-    }
-
-    void readEmission(const tinygltf::Material& from, const std::string& called, Material& m) {
-        if (from.emissiveFactor.size() != 3) return;
-        const double strength = number(from.extensions, "KHR_materials_emissive_strength", "emissiveStrength", 1);
-        for (int c = 0; c < 3; ++c) {
-            m.emission[c] = inRange(from.emissiveFactor[static_cast<std::size_t>(c)] * strength, 0, 1e30, called, "emissiveFactor");
-        }
-        // The factor of a textured glow is mostly 1 and the texture mostly black: without it the whole surface would shine.
-        if (from.emissiveTexture.index >= 0 && m.emission != Float3(0.0f)) {
-            m.emission = Float3(0.0f);
-            warn("material " + called + ": its glow comes from a texture and is left out");
-        }
-    }
-
-    void readBaseTexture(std::size_t index) {
-        const tinygltf::TextureInfo& info = model_.materials[index].pbrMetallicRoughness.baseColorTexture;
-        if (info.index < 0) return;
-        const std::string place = at("materials", index);
-        if (static_cast<std::size_t>(info.index) >= model_.textures.size()) {
-            fail("there is no texture " + std::to_string(info.index), place);
-        }
-        const tinygltf::Texture& texture = model_.textures[static_cast<std::size_t>(info.index)];
-        int image = texture.source;
-        if (image < 0) image = static_cast<int>(number(texture.extensions, "EXT_texture_webp", "source", -1));
-        if (image < 0) {
-            warn(at("textures", static_cast<std::size_t>(info.index)) + ": it names no picture of a kind that is read");
-            return;
-        }
-        if (static_cast<std::size_t>(image) >= images().size()) fail("there is no image " + std::to_string(image), place);
-        baseTextures_[index] = image;
-        Material& m = scene_.materials[index];
-        constexpr const char* kTransform = "KHR_texture_transform";
-        double set = number(info.extensions, kTransform, "texCoord", info.texCoord);
-        texcoordSets_[index] = static_cast<int>(std::clamp(set, 0.0, 1000.0));
-        m.textureRotation = static_cast<float>(number(info.extensions, kTransform, "rotation", 0));
-        const auto pair = [&](const char* key, Float2& into) {
-            if (!hasMember(info.extensions, kTransform, key)) return;
-            const tinygltf::Value& value = info.extensions.at(kTransform).Get(key);
-            for (int c = 0; c < 2; ++c) {
-                if (!value.IsArray() || value.ArrayLen() != 2 || !value.Get(c).IsNumber())
-                    fail(std::string(key) + " is not two numbers", place);
-                into[c] = static_cast<float>(value.Get(c).GetNumberAsDouble());
-            }
-        };
-        pair("offset", m.textureOffset);
-        pair("scale", m.textureScale);
-    }
-
-    int imageOf(const tinygltf::Value* texture) const {
-        const tinygltf::Value* index = texture && texture->Has("index") ? &texture->Get("index") : nullptr;
-        return index && index->IsInt() ? imageOf(index->GetNumberAsInt()) : -1;
-    }
-
-    int imageOf(int texture) const {
-        if (texture < 0 || static_cast<std::size_t>(texture) >= model_.textures.size()) return -1;
-        const int image = model_.textures[static_cast<std::size_t>(texture)].source;
-        return image >= 0 && static_cast<std::size_t>(image) < images().size() ? image : -1;
-    }
-
-    // Those of transmission, roughness and metal, of materials that let light through.
-    void readSurfaceTextures(std::size_t index) {
-        const tinygltf::Material& from = model_.materials[index];
-        if (!(scene_.materials[index].transmission > 0)) return;
-        constexpr const char* kTransmission = "KHR_materials_transmission";
-        SurfaceTextures& into = surfaceTextures_[index];
-        if (hasMember(from.extensions, kTransmission, "transmissionTexture"))
-            into.transmission = imageOf(&from.extensions.at(kTransmission).Get("transmissionTexture"));
-        into.roughness = imageOf(from.pbrMetallicRoughness.metallicRoughnessTexture.index);
-        into.metallic = static_cast<float>(std::clamp(from.pbrMetallicRoughness.metallicFactor, 0.0, 1.0));
-    }
-
-    // One picture of both, in the size of the larger: transmission times what is no metal in red, roughness in green.
-    Picture surfacePicture(const SurfaceTextures& from) {
-        const Picture white(1, 1, Float4(1.0f));
-        Picture transmission = white, roughness = white;
-        if (from.transmission >= 0) transmission = picture(static_cast<std::size_t>(from.transmission));
-        if (from.roughness >= 0) roughness = picture(static_cast<std::size_t>(from.roughness));
-        Picture both(std::max(transmission.width, roughness.width), std::max(transmission.height, roughness.height));
-        const auto at = [&](const Picture& one, std::uint32_t x, std::uint32_t y) {
-            return one.at(static_cast<std::uint32_t>(std::uint64_t(x) * one.width / both.width),
-                          static_cast<std::uint32_t>(std::uint64_t(y) * one.height / both.height));
-        };
-        for (std::uint32_t y = 0; y < both.height; ++y)
-            for (std::uint32_t x = 0; x < both.width; ++x) {
-                const Float4 rough = at(roughness, x, y);
-                const float metal = from.roughness >= 0 ? stored(rough.z) * from.metallic : 0.0f;
-                both.at(x, y) =
-                    Float4(stored(at(transmission, x, y).x) * (1.0f - metal), from.roughness >= 0 ? stored(rough.y) : 1.0f, 0.0f, 1.0f);
-            }
-        return both;
-    }
-
-    // Numbers of these textures are linear as they are stored; a picture of 8 bits was read as sRGB.
-    static float stored(float linear) { return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f; }
-
-    // Only pictures of materials that a triangle has; each once. A missing or broken one is a warning.
-    void readTextures() {
-        std::vector<char> used(scene_.materials.size(), 0);
-        for (std::uint32_t id : scene_.mesh.materials) used[id] = 1;
-        std::map<int, int> read;
-        for (std::size_t i = 0; i < baseTextures_.size(); ++i) {
-            const int image = baseTextures_[i];
-            if (!used[i] || image < 0) continue;
-            const auto [entry, isNew] = read.emplace(image, -1);
-            if (isNew) {
-                try {
-                    scene_.textures.push_back(picture(static_cast<std::size_t>(image)));
-                    entry->second = static_cast<int>(scene_.textures.size()) - 1;
-                } catch (const Error& error) {
-                    warn("picture " + std::to_string(image) + " is missing or broken, the plain base colour holds (" + error.text().what +
-                         ")");
-                }
-            }
-            scene_.materials[i].baseColourTexture = entry->second;
-        }
-        std::map<std::tuple<int, int, float>, int> surfaces;
-        for (std::size_t i = 0; i < surfaceTextures_.size(); ++i) {
-            const SurfaceTextures& from = surfaceTextures_[i];
-            if (!used[i] || (from.transmission < 0 && from.roughness < 0)) continue;
-            const auto [entry, isNew] = surfaces.emplace(std::tuple(from.transmission, from.roughness, from.metallic), -1);
-            if (isNew) {
-                try {
-                    scene_.textures.push_back(surfacePicture(from));
-                    entry->second = static_cast<int>(scene_.textures.size()) - 1;
-                } catch (const Error& error) {
-                    warn("a picture of transmission or roughness is missing or broken, the plain factors hold (" + error.text().what + ")");
-                }
-            }
-            scene_.materials[i].surfaceTexture = entry->second;
-        }
-    }
-
-    Picture picture(std::size_t index) {
-        const std::string place = at("images", index);
-        const Json& image = images()[index];
-        if (const auto uri = image.find("uri"); uri != image.end()) {
-            if (!uri->is_string()) fail("uri is no text", place);
-            const std::string& text = uri->get_ref<const std::string&>();
-            const std::vector<std::byte> bytes = bytesOfUri(text, place);
-            return loadPictureFromMemory(bytes, text.starts_with("data:") ? source_.name + ", " + place : text);
-        }
-        const auto view = image.find("bufferView");
-        if (view == image.end() || !view->is_number_integer()) fail("it has neither uri nor bufferView", place);
-        return loadPictureFromMemory(viewBytes(view->get<int>(), place), source_.name + ", " + place);
-    }
-
     // ---- triangles ----
 
     struct Vertices {
@@ -487,7 +253,7 @@ private:
 
     std::string texcoordName(const Placed& one) const {
         const int id = primitive(one).material;
-        const int set = id >= 0 ? texcoordSets_[static_cast<std::size_t>(id)] : 0;
+        const int set = id >= 0 ? materials_.texcoordSet(static_cast<std::size_t>(id)) : 0;
         return "TEXCOORD_" + std::to_string(set);
     }
 
@@ -690,8 +456,6 @@ private:
             m.name = "default";
             m.baseColour = Float3(1.0f);
             scene_.materials.push_back(m);
-            baseTextures_.push_back(-1);
-            texcoordSets_.push_back(0);
         }
         return *plain_;
     }
@@ -716,8 +480,7 @@ private:
     GltfRig rig_;
     std::optional<std::size_t> cameraNode_;
     bool lightRead_ = false;
-    std::vector<SurfaceTextures> surfaceTextures_;  // by material
-    std::vector<int> baseTextures_, texcoordSets_;  // by material: image or -1, and the set that places it
+    GltfMaterials materials_{*this, source_};
     std::optional<std::uint32_t> plain_;
     bool anyNormals_ = false, anyTexcoords_ = false, anyColours_ = false;
 };
