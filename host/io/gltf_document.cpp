@@ -307,14 +307,15 @@ std::size_t GltfDocument::forEachNumber(int index, const std::string& user, F&& 
         }
         const Bytes indices = viewBytes(a.sparse.indices.bufferView, place);
         const auto indexSize = static_cast<std::size_t>(tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(type)));
-        const auto count = static_cast<std::size_t>(std::max(a.sparse.count, 0));
-        const auto offset = static_cast<std::size_t>(a.sparse.indices.byteOffset);
-        if (a.sparse.indices.byteOffset < 0 || a.sparse.values.byteOffset < 0 || count > a.count || offset > indices.size() ||
-            count > (indices.size() - offset) / indexSize) {
+        const auto count = static_cast<std::size_t>(a.sparse.count);
+        const auto offset = static_cast<std::size_t>(a.sparse.indices.byteOffset),
+                   valuesOffset = static_cast<std::size_t>(a.sparse.values.byteOffset);
+        // What is negative is too large, whichever type this version of tinygltf gives it.
+        if (count > a.count || offset > indices.size() || count > (indices.size() - offset) / indexSize) {
             fail(std::to_string(a.sparse.count) + " sparse indices do not fit their buffer view or accessor", place);
         }
         run(
-            viewBytes(a.sparse.values.bufferView, place), static_cast<std::size_t>(a.sparse.values.byteOffset), element, count,
+            viewBytes(a.sparse.values.bufferView, place), valuesOffset, element, count,
             [&](std::size_t i) {
                 const auto to = static_cast<std::size_t>(component(indices.data() + offset + i * indexSize, type, false));
                 if (to >= a.count) fail("sparse index " + std::to_string(to) + " of " + std::to_string(a.count), place);
