@@ -29,15 +29,15 @@ struct Camera {
 };
 
 struct DirectionalLight {
-    Float3 toLight{0.4f, 0.8f, 0.3f};  ///< direction from the scene to the light, need not be unit
-    Float3 radiance{3.0f};             ///< linear RGB, irradiance on a surface that faces it
+    Float3 toLight{0.5f, 0.75f, -0.35f};  ///< direction from the scene to the light, need not be unit
+    Float3 radiance{6.0f, 5.6f, 4.8f};             ///< linear RGB, irradiance on a surface that faces it
 };
 
 /// Light from everywhere: a latitude-longitude map, +y up, column 0 at -x turning through -z... to +x as glTF viewers do, or a
 /// plain gradient where there is no map.
 struct Environment {
     Picture map;  ///< 2:1 linear RGB; empty: the gradient
-    Float3 zenith{0.45f, 0.62f, 0.95f}, horizon{0.95f, 0.95f, 0.95f}, nadir{0.35f, 0.32f, 0.30f};
+    Float3 zenith{0.16f, 0.32f, 0.75f}, horizon{0.75f, 0.85f, 1.0f}, nadir{0.20f, 0.18f, 0.16f};
     float intensity = 1.0f;
     float yawDegrees = 0.0f;  ///< turned about +y
 };
