@@ -47,14 +47,14 @@ GBuffer rasterize(Queue& queue, const DeviceMesh& mesh, const vitrail_CameraDesc
     const std::uint64_t pixels = static_cast<std::uint64_t>(desc.width) * desc.height;
     Workspace& workspace = queue.workspace();
     GBuffer out{desc, workspace.take<std::uint32_t>(pixels, "depth map"), workspace.take<std::uint32_t>(pixels, "triangle map")};
-    Buffer<std::uint8_t> boxed = workspace.take<std::uint8_t>(mesh.triangleCount(), "triangles seen");
+    Buffer<std::uint8_t> seen = workspace.take<std::uint8_t>(mesh.triangleCount(), "triangles seen");
     call.fill(out.depth, 0xff);
     call.fill(out.triangle, 0xff);
     const detail::Program program{"raster", detail::realOptions(queue)};
     call.launchRange(program, "gbuffer_depth", mesh.triangleCount(), desc, mesh.positions(), mesh.indices(), mesh.vertexCount(),
-                     static_cast<std::uint32_t>(faces), out.depth, boxed);
+                     static_cast<std::uint32_t>(faces), out.depth, seen);
     call.launchRange(program, "gbuffer_nearest", mesh.triangleCount(), desc, mesh.positions(), mesh.indices(), mesh.vertexCount(),
-                     static_cast<std::uint32_t>(faces), out.depth, boxed, out.triangle);
+                     static_cast<std::uint32_t>(faces), out.depth, seen, out.triangle);
     return out;
 }
 

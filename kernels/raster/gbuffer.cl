@@ -1,124 +1,238 @@
 // raster/gbuffer.cl: the nearest triangle of each pixel (vitrail/raster/gbuffer.h). Edge functions of the pixel's ray against the planes
 // through the eye and each edge (Olano & Greer 1997) need no clipping; two passes, both of integer minima, so the order of triangles and
-// threads does not matter: the depth, then the lowest triangle at that depth.
+// threads does not matter: the depth, then the lowest triangle at that depth. Eight triangles at a time: those of few pixels take a lane
+// each, the others eight of their pixels at once.
 #include "lib/camera.cl"
-#include "lib/range.cl"
-#include "lib/real.cl"
+#include "lib/lanes.cl"
 #pragma OPENCL FP_CONTRACT OFF
 
-#define FACES_AWAY 1u  // Faces of vitrail/raster/gbuffer.h
+#define FACES_AWAY 1u   // Faces of vitrail/raster/gbuffer.h
+#define GBUFFER_FEW 16  // pixels of a box
 
 typedef struct {
-    real x, y, z;
-} Vector;
+    real8 x, y, z;
+} Vectors;
 
-static inline Vector vector_cross(const Vector a, const Vector b) {
-    const Vector c = {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+// What decides a pixel of eight triangles: those are edge.x * x + edge.y * y + offset, and the plane normal . p = d.
+typedef struct {
+    real8 edgeX[3], edgeY[3], offset[3], nx, ny, nz, d;
+} Planes;
+
+typedef struct {
+    vitrail_CameraDesc camera;
+    global const float* positions;
+    global const uint* indices;
+    global uint* depth;
+    global uint* nearest;  // the second pass's
+    uint vertexCount, faces;
+} Raster;
+
+INLINE Vectors vectors_cross(const Vectors a, const Vectors b) {
+    const Vectors c = {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
     return c;
 }
-static inline real vector_dot(const Vector a, const Vector b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+INLINE real8 vectors_dot(const Vectors a, const Vectors b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-// Vertex in camera space: right, up, forward.
-static inline Vector gbuffer_vertex(const vitrail_CameraDesc* camera, global const float* positions, uint vertex) {
-    const size_t at = 3 * (size_t)vertex;
-    const real x = REAL(positions[at]) - REAL(camera->eye.x), y = REAL(positions[at + 1]) - REAL(camera->eye.y),
-               z = REAL(positions[at + 2]) - REAL(camera->eye.z);
-    const Vector v = {x * REAL(camera->right.x) + y * REAL(camera->right.y) + z * REAL(camera->right.z),
-                      x * REAL(camera->up.x) + y * REAL(camera->up.y) + z * REAL(camera->up.z),
-                      x * REAL(camera->forward.x) + y * REAL(camera->forward.y) + z * REAL(camera->forward.z)};
-    return v;
+// Of eight flags: bit i is lane i's.
+INLINE uint gbuffer_mask(int8 flags) {
+    const int8 own = flags & (int8)(1, 2, 4, 8, 16, 32, 64, 128);
+    const int4 four = own.lo | own.hi;
+    const int2 two = four.lo | four.hi;
+    return (uint)(two.x | two.y);
+}
+INLINE int gbuffer_lowest(uint mask) { return 31 - (int)clz(mask & (0u - mask)); }
+
+// camera_window's, of eight pixels.
+INLINE real8 gbuffer_across(const vitrail_CameraDesc* camera, int8 x) {
+    return LANES_REAL(((convert_float8(x) + 0.5f) / (float)camera->width * 2.0f - 1.0f) * camera->right.w);
+}
+INLINE real8 gbuffer_down(const vitrail_CameraDesc* camera, int8 y) {
+    return LANES_REAL((1.0f - (convert_float8(y) + 0.5f) / (float)camera->height * 2.0f) * camera->up.w);
 }
 
 // Pixels whose centres' window coordinates may lie between low and high, along an axis of `count` pixels over [-half, half]. Those of
 // camera_window are off by less than 2^-19 of the axis.
-static inline void gbuffer_span(real low, real high, float half_, uint count, int* first, int* last) {
+INLINE void gbuffer_span(real8 low, real8 high, float half_, uint count, int8* first, int8* last) {
     const real scale = REAL(count) / (REAL(2) * REAL(half_)),
                slack = REAL(count) * REAL(1.9073486328125e-6f) + REAL(0.0078125f) - REAL(0.5f);
-    *first = real_ceil_int(real_max((low + REAL(half_)) * scale + (REAL(-1) - slack), REAL(0)));
-    *last = real_floor_int(real_max(real_min((high + REAL(half_)) * scale + slack, REAL(count - 1u)), REAL(-1)));
+    *first = lanes_ceil_int(lanes_max((low + REAL(half_)) * scale + (REAL(-1) - slack), LANES_OF(0)));
+    const real8 end = lanes_max(lanes_min((high + REAL(half_)) * scale + slack, LANES_OF(count - 1u)), LANES_OF(-1));
+    const int8 whole = lanes_int(end);
+    *last = whole + LANES_TRUE(LANES_REAL(whole) > end);
 }
 
-// False: no pixel's centre lies in the triangle's box.
-static inline bool gbuffer_triangle(const vitrail_CameraDesc* camera, global const float* positions, global const uint* indices,
-                                    uint vertexCount, uint faces, uint triangle, bool second, global uint* depth, global uint* nearest) {
-    Vector v[3];
+// The pixels (x, y) of a lane each that are live and hit, as a mask, and their depths' bits.
+INLINE uint gbuffer_hits(const Raster* raster, const Planes* p, int8 x, int8 y, int8 live, uint8* bits) {
+    const bool flat = raster->camera.eye.w > 0.5f;
+    const real8 rx = gbuffer_across(&raster->camera, x), ry = gbuffer_down(&raster->camera, y);  // or, orthographic, the point at depth 0
+    const real8 e0 = p->edgeX[0] * rx + p->edgeY[0] * ry + p->offset[0], e1 = p->edgeX[1] * rx + p->edgeY[1] * ry + p->offset[1],
+                e2 = p->edgeX[2] * rx + p->edgeY[2] * ry + p->offset[2], zero = LANES_OF(0);
+    const real8 slope = flat ? p->nz : p->nx * rx + p->ny * ry + p->nz;
+    const real8 z = (flat ? p->d - p->nx * rx - p->ny * ry : p->d) / slope;
+    *bits = as_uint8(convert_float8(z));
+    // Not edge-on; right, up, forward are left-handed: n is turned around.
+    return gbuffer_mask(live &
+                        LANES_TRUE((((e0 >= zero) & (e1 >= zero) & (e2 >= zero)) | ((e0 <= zero) & (e1 <= zero) & (e2 <= zero))) &
+                                   (raster->faces == FACES_AWAY ? slope < zero : slope != zero) & (z > zero) & (z <= LANES_OF(1e30f))));
+}
+
+// Whether the triangle is the nearest so far.
+INLINE bool gbuffer_put(const Raster* raster, size_t pixel, uint bits, uint triangle) {
+    if (raster->nearest) {
+        if (raster->depth[pixel] == bits && triangle < raster->nearest[pixel]) atomic_min(raster->nearest + pixel, triangle);
+        return false;
+    }
+    const uint before = raster->depth[pixel];  // it only falls
+    return before > bits ? atomic_min(raster->depth + pixel, bits) >= bits : before == bits;
+}
+
+// Of these triangles, the first `live`: those nearest somewhere when they were drawn, as a mask.
+INLINE uint gbuffer_eight(const Raster* raster, const uint triangle[LANES], int live) {
+    const vitrail_CameraDesc* camera = &raster->camera;
+    float corners[9][LANES];
+    int usable[LANES];
+    size_t there[LANES][3];  // first, so that many loads are under way at a time
+#pragma unroll
+    for (int lane = 0; lane < LANES; ++lane) {
+        const uint3 vertex = vload3(triangle[lane], raster->indices);
+        usable[lane] =
+            lane < live && vertex.x < raster->vertexCount && vertex.y < raster->vertexCount && vertex.z < raster->vertexCount ? -1 : 0;
+        there[lane][0] = usable[lane] ? vertex.x : 0u;
+        there[lane][1] = usable[lane] ? vertex.y : 0u;
+        there[lane][2] = usable[lane] ? vertex.z : 0u;
+    }
+#pragma unroll
+    for (int lane = 0; lane < LANES; ++lane)
+#pragma unroll
+        for (int k = 0; k < 3; ++k) {
+            const float3 p = vload3(there[lane][k], raster->positions);
+            corners[3 * k][lane] = p.x;
+            corners[3 * k + 1][lane] = p.y;
+            corners[3 * k + 2][lane] = p.z;
+        }
+    int8 good = vload8(0, usable);
+    Vectors v[3];  // in camera space: right, up, forward
+#pragma unroll
     for (int k = 0; k < 3; ++k) {
-        const uint i = indices[3 * (size_t)triangle + k];
-        if (i >= vertexCount) return false;
-        v[k] = gbuffer_vertex(camera, positions, i);
-        if (!(fabs(v[k].x) + fabs(v[k].y) + fabs(v[k].z) < REAL(1e30f))) return false;
+        const real8 x = LANES_REAL(vload8(0, corners[3 * k])) - REAL(camera->eye.x),
+                    y = LANES_REAL(vload8(0, corners[3 * k + 1])) - REAL(camera->eye.y),
+                    z = LANES_REAL(vload8(0, corners[3 * k + 2])) - REAL(camera->eye.z);
+        v[k].x = x * REAL(camera->right.x) + y * REAL(camera->right.y) + z * REAL(camera->right.z);
+        v[k].y = x * REAL(camera->up.x) + y * REAL(camera->up.y) + z * REAL(camera->up.z);
+        v[k].z = x * REAL(camera->forward.x) + y * REAL(camera->forward.y) + z * REAL(camera->forward.z);
+        good &= LANES_TRUE(fabs(v[k].x) + fabs(v[k].y) + fabs(v[k].z) < LANES_OF(1e30f));
     }
     const bool flat = camera->eye.w > 0.5f;  // orthographic
-    const real nearest3 = real_min(v[0].z, real_min(v[1].z, v[2].z));
-    if (real_max(v[0].z, real_max(v[1].z, v[2].z)) <= REAL(0)) return false;
-    int xFirst = 0, xLast = (int)camera->width - 1, yFirst = 0, yLast = (int)camera->height - 1;
-    if (flat || nearest3 > REAL(0)) {
-        real low[2], high[2];
-        for (int k = 0; k < 3; ++k) {
-            const real inverse = flat ? REAL(1) : REAL(1) / v[k].z;
-            const real px = v[k].x * inverse, py = v[k].y * inverse;
-            low[0] = k == 0 ? px : real_min(low[0], px);
-            high[0] = k == 0 ? px : real_max(high[0], px);
-            low[1] = k == 0 ? py : real_min(low[1], py);
-            high[1] = k == 0 ? py : real_max(high[1], py);
-        }
-        if (high[0] < -REAL(camera->right.w) || low[0] > REAL(camera->right.w) || high[1] < -REAL(camera->up.w) ||
-            low[1] > REAL(camera->up.w))
-            return false;
-        gbuffer_span(low[0], high[0], camera->right.w, camera->width, &xFirst, &xLast);
-        gbuffer_span(-high[1], -low[1], camera->up.w, camera->height, &yFirst, &yLast);  // rows run downward
-        if (xFirst > xLast || yFirst > yLast) return false;
-    }
-    // Edge planes: through the eye, or along the view direction.
-    const Vector forward = {REAL(0), REAL(0), REAL(1)};
-    Vector edge[3];
-    real offset[3] = {REAL(0), REAL(0), REAL(0)};
+    good &= LANES_TRUE(lanes_max3(v[0].z, v[1].z, v[2].z) > LANES_OF(0));
+    const int8 boxed = flat ? (int8)(-1) : LANES_TRUE(lanes_min3(v[0].z, v[1].z, v[2].z) > LANES_OF(0));
+    real8 lowX, highX, lowY, highY;
+#pragma unroll
     for (int k = 0; k < 3; ++k) {
-        const Vector a = v[(k + 1) % 3], b = v[(k + 2) % 3];
+        const real8 inverse = flat ? LANES_OF(1) : LANES_OF(1) / v[k].z, px = v[k].x * inverse, py = v[k].y * inverse;
+        lowX = k == 0 ? px : lanes_min(lowX, px);
+        highX = k == 0 ? px : lanes_max(highX, px);
+        lowY = k == 0 ? py : lanes_min(lowY, py);
+        highY = k == 0 ? py : lanes_max(highY, py);
+    }
+    good &= ~(boxed & LANES_TRUE((highX < LANES_OF(-camera->right.w)) | (lowX > LANES_OF(camera->right.w)) |
+                                 (highY < LANES_OF(-camera->up.w)) | (lowY > LANES_OF(camera->up.w))));
+    int8 xFirst, xLast, yFirst, yLast;
+    gbuffer_span(lowX, highX, camera->right.w, camera->width, &xFirst, &xLast);
+    gbuffer_span(-highY, -lowY, camera->up.w, camera->height, &yFirst, &yLast);  // rows run downward
+    xFirst &= boxed;
+    yFirst &= boxed;
+    xLast = (xLast & boxed) | (((int)camera->width - 1) & ~boxed);
+    yLast = (yLast & boxed) | (((int)camera->height - 1) & ~boxed);
+    good &= (xFirst <= xLast) & (yFirst <= yLast);
+    const uint all = gbuffer_mask(good);
+    if (all == 0u) return 0u;
+    // Edge planes: through the eye, or along the view direction.
+    Planes p;
+#pragma unroll
+    for (int k = 0; k < 3; ++k) {
+        const Vectors a = v[(k + 1) % 3], b = v[(k + 2) % 3];
         if (flat) {
-            const Vector along = {b.x - a.x, b.y - a.y, b.z - a.z};
-            edge[k] = vector_cross(forward, along);
-            offset[k] = -vector_dot(edge[k], a);
+            p.edgeX[k] = -(b.y - a.y);
+            p.edgeY[k] = b.x - a.x;
+            p.offset[k] = -(p.edgeX[k] * a.x + p.edgeY[k] * a.y);
         } else {
-            edge[k] = vector_cross(a, b);
+            const Vectors edge = vectors_cross(a, b);
+            p.edgeX[k] = edge.x;
+            p.edgeY[k] = edge.y;
+            p.offset[k] = edge.z;
         }
     }
-    const Vector u = {v[1].x - v[0].x, v[1].y - v[0].y, v[1].z - v[0].z}, w = {v[2].x - v[0].x, v[2].y - v[0].y, v[2].z - v[0].z};
-    const Vector n = vector_cross(u, w);
-    const real d = vector_dot(n, v[0]);
-    for (int y = yFirst; y <= yLast; ++y)
-        for (int x = xFirst; x <= xLast; ++x) {
-            const float2 window = camera_window(camera, (uint)x, (uint)y);
-            const Vector ray = {REAL(window.x), REAL(window.y), REAL(1)};  // or, orthographic, the point it passes at depth 0 and z ignored
-            const real e0 = edge[0].x * ray.x + edge[0].y * ray.y + (flat ? offset[0] : edge[0].z);
-            const real e1 = edge[1].x * ray.x + edge[1].y * ray.y + (flat ? offset[1] : edge[1].z);
-            const real e2 = edge[2].x * ray.x + edge[2].y * ray.y + (flat ? offset[2] : edge[2].z);
-            const bool inside = (e0 >= REAL(0) && e1 >= REAL(0) && e2 >= REAL(0)) || (e0 <= REAL(0) && e1 <= REAL(0) && e2 <= REAL(0));
-            if (!inside) continue;
-            const real slope = flat ? n.z : vector_dot(n, ray);
-            if (slope == REAL(0)) continue;                        // edge-on
-            if (faces == FACES_AWAY && slope > REAL(0)) continue;  // right, up, forward are left-handed: n is turned around
-            const real z = flat ? (d - n.x * ray.x - n.y * ray.y) / slope : d / slope;
-            if (!(z > REAL(0)) || z > REAL(1e30f)) continue;
-            const uint bits = as_uint((float)z);
-            const size_t pixel = (size_t)y * camera->width + x;
-            if (!second)
-                atomic_min(depth + pixel, bits);
-            else if (depth[pixel] == bits)
-                atomic_min(nearest + pixel, triangle);
+    const Vectors u = {v[1].x - v[0].x, v[1].y - v[0].y, v[1].z - v[0].z}, w = {v[2].x - v[0].x, v[2].y - v[0].y, v[2].z - v[0].z};
+    const Vectors n = vectors_cross(u, w);
+    p.nx = n.x;
+    p.ny = n.y;
+    p.nz = n.z;
+    p.d = vectors_dot(n, v[0]);
+
+    uint seen = 0u;
+    const int8 few = good & boxed & (xLast - xFirst < GBUFFER_FEW) & (yLast - yFirst < GBUFFER_FEW) &
+                     ((xLast - xFirst + 1) * (yLast - yFirst + 1) <= GBUFFER_FEW);
+    int8 x = xFirst, y = yFirst, within = few;
+    uint8 bits;
+    while (gbuffer_mask(within) != 0u) {
+        const uint8 pixel = as_uint8(y) * camera->width + as_uint8(x);
+        for (uint hits = gbuffer_hits(raster, &p, x, y, within, &bits); hits != 0u; hits &= hits - 1u) {
+            const int lane = gbuffer_lowest(hits);
+            if (gbuffer_put(raster, ((const uint*)&pixel)[lane], ((const uint*)&bits)[lane], triangle[lane])) seen |= 1u << lane;
         }
-    return true;
+        const int8 wrap = x >= xLast;
+        x = wrap ? xFirst : x + 1;
+        y -= wrap;
+        within &= y <= yLast;
+    }
+    for (uint many = all & ~gbuffer_mask(few); many != 0u; many &= many - 1u) {
+        const int lane = gbuffer_lowest(many), from = lanes_int_at(&xFirst, lane), to = lanes_int_at(&xLast, lane),
+                  end = lanes_int_at(&yLast, lane);
+        Planes one;
+        for (int i = 0; i < (int)(sizeof(Planes) / sizeof(real8)); ++i) ((real8*)&one)[i] = (real8)(lanes_at((const real8*)&p + i, lane));
+        for (int row = lanes_int_at(&yFirst, lane); row <= end; ++row)
+            for (int at = from; at <= to; at += LANES) {
+                const int8 columns = at + LANES_IOTA_INT;
+                for (uint hits = gbuffer_hits(raster, &one, columns, (int8)(row), columns <= to, &bits); hits != 0u; hits &= hits - 1u) {
+                    const int hit = gbuffer_lowest(hits);
+                    if (gbuffer_put(raster, (size_t)row * camera->width + (uint)(at + hit), ((const uint*)&bits)[hit], triangle[lane]))
+                        seen |= 1u << lane;
+                }
+            }
+    }
+    return seen;
 }
 
-// boxed: a byte a triangle, 0 where the second pass need not look.
+// seen: a byte a triangle, 0 where the second pass need not look: something nearer was there already.
 kernel void gbuffer_depth(const vitrail_CameraDesc camera, global const float* positions, global const uint* indices, uint vertexCount,
-                          uint faces, global uint* depth, global uchar* boxed, ulong count, uint perItem) {
-    FOR_RANGE(i, count, perItem)
-    boxed[i] = gbuffer_triangle(&camera, positions, indices, vertexCount, faces, (uint)i, false, depth, 0) ? 1 : 0;
+                          uint faces, global uint* depth, global uchar* seen, ulong count, uint perItem) {
+    const Raster raster = {camera, positions, indices, depth, 0, vertexCount, faces};
+    const size_t begin = get_global_id(0) * (size_t)perItem, end = min(begin + perItem, (size_t)count);
+    for (size_t i = begin; i < end; i += LANES) {
+        const int live = (int)min(end - i, (size_t)LANES);
+        uint triangle[LANES];
+        for (int lane = 0; lane < LANES; ++lane) triangle[lane] = (uint)i + (uint)min(lane, live - 1);
+        const uint mask = gbuffer_eight(&raster, triangle, live);
+        for (int lane = 0; lane < live; ++lane) seen[i + (size_t)lane] = (uchar)(mask >> lane & 1u);
+    }
 }
 
 kernel void gbuffer_nearest(const vitrail_CameraDesc camera, global const float* positions, global const uint* indices, uint vertexCount,
-                            uint faces, global uint* depth, global const uchar* boxed, global uint* nearest, ulong count, uint perItem) {
-    FOR_RANGE(i, count, perItem)
-    if (boxed[i]) gbuffer_triangle(&camera, positions, indices, vertexCount, faces, (uint)i, true, depth, nearest);
+                            uint faces, global uint* depth, global const uchar* seen, global uint* nearest, ulong count, uint perItem) {
+    const Raster raster = {camera, positions, indices, depth, nearest, vertexCount, faces};
+    const size_t begin = get_global_id(0) * (size_t)perItem, end = min(begin + perItem, (size_t)count);
+    uint triangle[LANES];
+    int live = 0;
+    for (size_t i = begin; i < end || live > 0;) {
+        if (i + LANES <= end && as_ulong(vload8(0, seen + i)) == 0ul) {
+            i += LANES;
+            continue;
+        }
+        for (const size_t stop = min(i + LANES, end); i < stop && live < LANES; ++i)
+            if (seen[i]) triangle[live++] = (uint)i;
+        if (live < LANES && i < end) continue;
+        for (int lane = live; lane < LANES; ++lane) triangle[lane] = triangle[0];
+        if (live > 0) gbuffer_eight(&raster, triangle, live);
+        live = 0;
+    }
 }
