@@ -8,12 +8,6 @@
 #pragma OPENCL EXTENSION cl_khr_int64_extended_atomics : enable
 #endif
 
-#ifdef VITRAIL_OCLGRIND  // takes a look at a word that others set for a race
-#define BITS_LOOK false
-#else
-#define BITS_LOOK true
-#endif
-
 // Where bits go. bricks: null where every tile has its words. words: null in the launch that finds out which tiles need a brick.
 typedef struct {
     global uint* words;
@@ -45,7 +39,7 @@ INLINE bool bits_open(const Bits* to, size_t tile, global uint** words) {
         if (!to->words) {
             global uint* group = (global uint*)(to->bricks + (tile >> 5));
             const uint bit = 1u << ((uint)tile & 31u);
-            if (!BITS_LOOK || !(*group & bit)) atomic_or(group, bit);
+            if (!LOOK_FIRST || !(*group & bit)) atomic_or(group, bit);
             return false;
         }
         tile = bits_brick(to->bricks, tile);
@@ -105,7 +99,7 @@ INLINE void bits_flush(const Bits* to, BitsQueue* queue) {
             if (mask == 0ul || !bits_open(to, pair / BITS_PAIRS_PER_TILE, &words)) continue;
             pair = (ulong)(words - to->words) / 2u + pair % BITS_PAIRS_PER_TILE;
         }
-        if (BITS_LOOK) mask &= ~((global const ulong*)to->words)[pair];
+        if (LOOK_FIRST) mask &= ~((global const ulong*)to->words)[pair];
         queue->pair[left] = pair;
         queue->mask[left] = mask;
         left += mask != 0ul ? 1u : 0u;
@@ -121,7 +115,7 @@ INLINE void bits_room(const Bits* to, BitsQueue* queue, uint count) {
 
 // ORs bits that are likely to be there.
 INLINE void bits_set_often(global uint* word, uint mask) {
-    if (!BITS_LOOK || (*word & mask) != mask) atomic_or(word, mask);
+    if (!LOOK_FIRST || (*word & mask) != mask) atomic_or(word, mask);
 }
 
 // Sets slices zFirst to zLast of a column, most of which are likely to be there.

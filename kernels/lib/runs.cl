@@ -81,8 +81,8 @@ INLINE uint runs_rows(const uint flags, const vitrail_GridDesc* grid, const Samp
                 const size_t column = (size_t)y * grid->size.x + (uint)x;
                 float least = (float)(low / depth), most = span ? (float)(high / depth) : least;
                 if (make) {
-                    if (!BITS_LOOK || as_uint(least) < nearest[column]) atomic_min(nearest + column, as_uint(least));
-                    if (!BITS_LOOK || as_uint(most) > farthest[column]) atomic_max(farthest + column, as_uint(most));
+                    if (!LOOK_FIRST || as_uint(least) < nearest[column]) atomic_min(nearest + column, as_uint(least));
+                    if (!LOOK_FIRST || as_uint(most) > farthest[column]) atomic_max(farthest + column, as_uint(most));
                     continue;
                 }
                 const float first = as_float(nearest[column]), last = as_float(farthest[column]);

@@ -76,14 +76,14 @@ INLINE uint gbuffer_hits(const Raster* raster, const Planes* p, int8 x, int8 y, 
                                    (raster->faces == FACES_AWAY ? slope < zero : slope != zero) & (z > zero) & (z <= LANES_OF(1e30f))));
 }
 
-// Whether the triangle is the nearest so far.
+// Whether the triangle is the nearest so far. Depths and numbers only fall.
 INLINE bool gbuffer_put(const Raster* raster, size_t pixel, uint bits, uint triangle) {
+    global uint *depth = raster->depth + pixel, *nearest = raster->nearest + pixel;
     if (raster->nearest) {
-        if (raster->depth[pixel] == bits && triangle < raster->nearest[pixel]) atomic_min(raster->nearest + pixel, triangle);
+        if (*depth == bits && (!LOOK_FIRST || triangle < *nearest)) atomic_min(nearest, triangle);
         return false;
     }
-    const uint before = raster->depth[pixel];  // it only falls
-    return before > bits ? atomic_min(raster->depth + pixel, bits) >= bits : before == bits;
+    return (!LOOK_FIRST || bits <= *depth) && atomic_min(depth, bits) >= bits;
 }
 
 // Of these triangles, the first `live`: those nearest somewhere when they were drawn, as a mask.
