@@ -143,20 +143,33 @@ static inline void channels_close(const Channels* channels, uint places[2]) {
     while (places[0] != places[1]) channels_place(channels, places[0]++, CHANNELS_NO_VOXEL, 0u, 0u);
 }
 
+// Counts `times` fragments of the triangle in a voxel, lists the triangle and its material there.
+static inline void channels_count(const Share* share, size_t index, uint times) {
+    const Channels* channels = share->channels;
+    if (channels->count) {
+        const uint before = atomic_add(channels->count + index, times);
+        if (channels->list) channels_fragment(share, (uint)index, before);
+    } else if (channels->list) {
+        channels->list[atomic_inc(channels->cursor + index)] = share->triangle;
+    }
+    if (channels->material) atomic_min(channels->material + index, share->material);
+}
+
+// Whether fragments only do that.
+static inline bool channels_only_count(const Channels* channels) {
+    return !channels->normalSum && !channels->orientationSum && !channels->colourSum;
+}
+
 // `times` fragments of the triangle in the voxel of this bit, which lie in cell (x, y, z).
 static inline void channels_add_at(const Share* share, size_t word, uint bit, uint x, uint y, uint z, uint times) {
     const Channels* channels = share->channels;
     const size_t index = bits_rank(channels->words, channels->rank, word, bit);
-    if (channels->count) {
-        const uint before = atomic_add(channels->count + index, times);
-        if (channels->list) channels_fragment(share, (uint)index, before);
-    }
+    channels_count(share, index, times);
     if (channels->normalSum)
         for (int k = 0; k < 3; ++k) fixed_add(channels->normalSum + 3 * index + k, share->normal[k] * (long)times);
     if (channels->orientationSum)
         for (int k = 0; k < ORIENTATION_SUMS; ++k)
             fixed_add(channels->orientationSum + ORIENTATION_SUMS * index + k, share->orientation[k] * (long)times);
-    if (channels->material) atomic_min(channels->material + index, share->material);
     if (channels->colourSum) {
         const float4 colour = channels_colour(share, x, y, z);
         const float value[4] = {colour.x, colour.y, colour.z, colour.w};
@@ -164,7 +177,6 @@ static inline void channels_add_at(const Share* share, size_t word, uint bit, ui
         for (int k = 0; k < 4; ++k) fixed_add(sums + k, convert_long_rte(value[k] * (float)FIXED_ONE) * (long)times);
         fixed_add(sums + 4, (long)times);
     }
-    if (channels->list && !channels->count) channels->list[atomic_inc(channels->cursor + index)] = share->triangle;
 }
 
 // The same in the voxel of that cell.

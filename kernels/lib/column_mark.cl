@@ -130,22 +130,44 @@ INLINE void column_blocks(const Runs* runs, int lane, int xLeast, int xMost, int
         }
 }
 
-// Marks cells of a column of each of eight triangles.
-INLINE void column_mark_lanes(BitsQueue* queue, uint8 tile, uint8 inTile, uint8 mask) {
+// Counts the fragments of a column of each of eight triangles: neighbours in a word are voxels with numbers in turn.
+INLINE void column_count_lanes(Mark* mark, const uint triangles[LANES], uint8 tile, uint8 inTile, uint8 mask) {
+    const Channels* channels = mark->channels;
+#pragma unroll
+    for (int lane = 0; lane < LANES; ++lane) {
+        const uint bits = ((const uint*)&mask)[lane];
+        if (bits == 0u) continue;
+        const size_t word =
+            bits_brick(channels->bricks, ((const uint*)&tile)[lane]) * VITRAIL_WORDS_PER_TILE + ((const uint*)&inTile)[lane];
+        const size_t first = bits_rank(channels->words, channels->rank, word, 31u - clz(bits & (0u - bits)));
+        mark->share.triangle = triangles[lane];
+        mark->share.material = channels->materials ? channels->materials[triangles[lane]] : 0u;
+        const uint count = popcount(bits);
+        for (uint k = 0; k < count; ++k) channels_count(&mark->share, first + k, 1u);
+    }
+}
+
+// Marks cells of a column of each of eight triangles, or counts them.
+INLINE void column_mark_lanes(Mark* mark, const uint triangles[LANES], uint8 tile, uint8 inTile, uint8 mask) {
+    if (mark->channels) {
+        column_count_lanes(mark, triangles, tile, inTile, mask);
+        return;
+    }
+    BitsQueue* queue = mark->queue;
     vstore8(convert_ulong8(tile) * BITS_PAIRS_PER_TILE + convert_ulong8(inTile >> 1), 0, queue->pair + queue->count);
     vstore8(convert_ulong8(mask) << convert_ulong8((inTile & 1u) * 32u), 0, queue->mask + queue->count);
     queue->count += LANES;
 }
 
 // The same by the same numbers for those of eight triangles that are `small` (-1), at most 31 cells high: a column of each at a time.
-INLINE void column_lanes(const Runs* runs, int8 small, const Mark* mark) {
+INLINE void column_lanes(const Runs* runs, const uint triangles[LANES], int8 small, Mark* mark) {
     const int8 width = (runs->last[0] - runs->first[0] + 1) & small, depth = (runs->last[1] - runs->first[1] + 1) & small;
     const int8 height = runs->last[2] - runs->first[2] + 1;
     const real8 none = LANES_OF(0), most = LANES_REAL(height);
     const uint8 shift = as_uint8(runs->first[2]) & 31u, block = as_uint8(runs->first[2]) >> 5;
     const bool across = lanes_int_least(as_int8(shift) + height > 32) != 0;
     const int widest = -lanes_int_least(-width), deepest = -lanes_int_least(-depth);
-    bits_room(&mark->bits, mark->queue, (uint)(widest * deepest * LANES * (across ? 2 : 1)));
+    if (!mark->channels) bits_room(&mark->bits, mark->queue, (uint)(widest * deepest * LANES * (across ? 2 : 1)));
     for (int j = 0; j < deepest; ++j) {
         real8 xLow, xHigh, rowLow, rowHigh;
         run_between_lanes(&runs->xOfY, LANES_OF(j), &xLow, &xHigh);
@@ -164,10 +186,10 @@ INLINE void column_lanes(const Runs* runs, int8 small, const Mark* mark) {
             const uint8 mask = (ones << as_uint8(first)) & ~(ones << as_uint8(end)) & as_uint8(within & (width > i) & (depth > j));
             const uint8 x = as_uint8(min(runs->first[0] + i, runs->last[0]));
             const uint8 tile = ((y >> 3) * mark->grid->tilesX + (x >> 3)) * mark->grid->size.w + block, inTile = (y & 7u) * 8u + (x & 7u);
-            column_mark_lanes(mark->queue, tile, inTile, mask << shift);
+            column_mark_lanes(mark, triangles, tile, inTile, mask << shift);
             if (across) {
                 const uint8 over = as_uint8(as_int8(shift) + height > 32);
-                column_mark_lanes(mark->queue, tile - over, inTile, (mask >> (32u - shift)) & over);
+                column_mark_lanes(mark, triangles, tile - over, inTile, (mask >> (32u - shift)) & over);
             }
         }
     }
@@ -217,11 +239,13 @@ INLINE int8 column_small(const Runs* runs) {
     mark.channels = rank ? &channels : 0;                                                                                    \
     uint places[2] = {0u, 0u};                                                                                               \
     mark.share.places = places;                                                                                              \
+    mark.share.channels = mark.channels;                                                                                     \
+    const bool aside = groups || (rank && !channels_only_count(&channels));                                                  \
     MARK_EIGHTS(triangles, blocks, live, {                                                                                   \
         Runs runs;                                                                                                           \
         run_setup(thin, &grid, positions, indices, vertexCount, triangles, live, &runs);                                     \
-        const int8 small = rank || groups ? (int8)(0) : column_small(&runs);                                                 \
-        if (lanes_int_least(small) != 0) column_lanes(&runs, small, &mark);                                                  \
+        const int8 small = aside ? (int8)(0) : column_small(&runs);                                                          \
+        if (lanes_int_least(small) != 0) column_lanes(&runs, triangles, small, &mark);                                       \
         for (int lane = 0; lane < LANES; ++lane) {                                                                           \
             if (lanes_int_at(&small, lane) != 0) continue;                                                                   \
             mark.triangle = triangles[lane];                                                                                 \
