@@ -307,19 +307,19 @@ static inline vitrail_SurfaceVoxel surface_pack(const SurfaceSum* sum) {
     normal = frame_unpack_normal(out.normal);
     frame_tangents(normal, &t, &b);
     // The shading normal as a linear function of the place along t and b, by least squares: covariances with it times the inverse of its own.
-    const real area = (real)sum->area;
+    const real perArea = REAL(1) / (real)sum->area;
     real place[3], shade[3];
     for (int i = 0; i < 3; ++i) {
-        place[i] = (real)sum->centroid[i] / area - REAL(0.5);
-        shade[i] = (real)sum->normal[i] / area;
+        place[i] = (real)sum->centroid[i] * perArea - REAL(0.5);
+        shade[i] = (real)sum->normal[i] * perArea;
     }
     const int of[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
     float3 row[3], own[3];
     for (int i = 0; i < 3; ++i) {
         float s[3], p[3];
         for (int j = 0; j < 3; ++j) {
-            s[j] = (float)((real)sum->along[3 * i + j] / area - shade[i] * place[j]);
-            p[j] = (float)((real)sum->square[of[3 * i + j]] / area - place[i] * place[j]);
+            s[j] = (float)((real)sum->along[3 * i + j] * perArea - shade[i] * place[j]);
+            p[j] = (float)((real)sum->square[of[3 * i + j]] * perArea - place[i] * place[j]);
         }
         row[i] = (float3)(s[0], s[1], s[2]);
         own[i] = (float3)(p[0], p[1], p[2]);
