@@ -37,7 +37,7 @@ struct Options {
 float automaticExposure(const Picture& picture) {
     double sum = 0;
     for (const Float4& p : picture.pixels) sum += std::log(1e-4 + 0.2126 * p.x + 0.7152 * p.y + 0.0722 * p.z);
-    return static_cast<float>(0.8 / std::exp(sum / static_cast<double>(std::max<std::size_t>(1, picture.pixels.size()))));
+    return static_cast<float>(0.65 / std::exp(sum / static_cast<double>(std::max<std::size_t>(1, picture.pixels.size()))));
 }
 
 Image renderVoxels(Queue& queue, const Options& options, const Mesh& mesh, const Camera& camera) {
