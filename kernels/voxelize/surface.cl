@@ -120,8 +120,8 @@ INLINE void surface_clip(const float8 v[3][3], const float8 n[3], const float8 l
     }
 }
 
-// The parts of triangles list[at] to list[at + live - 1] in the voxel whose low corner lies at `corner` of the world, 1 <= live <= 8.
-INLINE void surface_eight(const SurfaceMesh* mesh, size_t at, int live, const Point corner, SurfaceEight* out) {
+// The parts of triangles list[at] to list[at + live - 1] in voxels whose low corners lie at `corner` of the world, 1 <= live <= 8.
+INLINE void surface_eight(const SurfaceMesh* mesh, size_t at, int live, const real8 corner[3], SurfaceEight* out) {
     const real scale = REAL(1) / REAL(mesh->grid->extent.x);
     float corners[9][LANES], normals[9][LANES];
     int usable[LANES];
@@ -158,9 +158,9 @@ INLINE void surface_eight(const SurfaceMesh* mesh, size_t at, int live, const Po
     float8 v[3][3];  // in the cell
 #pragma unroll
     for (int k = 0; k < 3; ++k) {
-        v[k][0] = convert_float8((LANES_REAL(vload8(0, corners[3 * k])) - corner.x) * scale);
-        v[k][1] = convert_float8((LANES_REAL(vload8(0, corners[3 * k + 1])) - corner.y) * scale);
-        v[k][2] = convert_float8((LANES_REAL(vload8(0, corners[3 * k + 2])) - corner.z) * scale);
+        v[k][0] = convert_float8((LANES_REAL(vload8(0, corners[3 * k])) - corner[0]) * scale);
+        v[k][1] = convert_float8((LANES_REAL(vload8(0, corners[3 * k + 1])) - corner[1]) * scale);
+        v[k][2] = convert_float8((LANES_REAL(vload8(0, corners[3 * k + 2])) - corner[2]) * scale);
     }
     float8 u[3], w[3], n[3], origin[3], low[3], high[3];
 #pragma unroll
@@ -365,28 +365,31 @@ static inline uint surface_relation(const SurfaceSum* a, const SurfaceSum* b) {
 
 #define SURFACE_KEPT 4  // eights of a voxel that are not clipped again
 
-// The planes of a voxel: one, or around seeds, each the largest of the triangles that agree with no seed before (of equal ones the lowest).
-// A triangle goes to the seed it agrees with best.
-static inline int surface_planes(const SurfaceMesh* mesh, size_t from, size_t end, const Point corner,
+// Whether one plane does for parts that add up to this.
+static inline bool surface_coherent(const SurfaceSum* sum) {
+    return SURFACE_ONE_PLANE || sum->area <= 0 || surface_length(sum) > SURFACE_COHERENT;
+}
+
+// The planes of a voxel of which one does not do: around seeds, each the largest of the triangles that agree with no seed before (of equal ones
+// the lowest). A triangle goes to the seed it agrees with best. sums[0]: of all parts; stays so where there is one plane.
+static inline int surface_planes(const SurfaceMesh* mesh, size_t from, size_t end, const real8 corner[3],
                                  SurfaceSum sums[VITRAIL_SURFACE_PLANES]) {
     SurfaceEight kept[SURFACE_KEPT];
     const int eights = (int)((end - from + LANES - 1) / LANES);
     float3 seed[VITRAIL_SURFACE_PLANES];
     int count = 0;
     SurfaceEight all;
-    surface_zero_eight(&all);
-    // Round 0 adds all up; then come the seeds, a round each, and last, below, the sums around them.
-    for (int round = 0; round <= VITRAIL_SURFACE_PLANES; ++round) {
+    for (int e = 0; eights <= SURFACE_KEPT && e < eights; ++e) {
+        const size_t at = from + (size_t)e * LANES;
+        surface_eight(mesh, at, (int)min(end - at, (size_t)LANES), corner, &kept[e]);
+    }
+    while (count < VITRAIL_SURFACE_PLANES) {
         long most = 0;
         uint lowest = 0u;
         for (int e = 0; e < eights; ++e) {
             SurfaceEight* parts = &kept[e % SURFACE_KEPT];
             const size_t at = from + (size_t)e * LANES;
-            if (round == 0 || eights > SURFACE_KEPT) surface_eight(mesh, at, (int)min(end - at, (size_t)LANES), corner, parts);
-            if (round == 0) {
-                surface_add_eight(parts, (long8)(-1), &all);
-                continue;
-            }
+            if (eights > SURFACE_KEPT) surface_eight(mesh, at, (int)min(end - at, (size_t)LANES), corner, parts);
             for (int lane = 0; lane < LANES; ++lane) {
                 const long area = ((const long*)&parts->area)[lane];
                 if (area <= 0 || area < most || (area == most && parts->triangle[lane] >= lowest)) continue;
@@ -399,11 +402,6 @@ static inline int surface_planes(const SurfaceMesh* mesh, size_t from, size_t en
                 lowest = parts->triangle[lane];
                 seed[count] = flat;
             }
-        }
-        if (round == 0) {
-            surface_sum(&all, &sums[0]);
-            if (SURFACE_ONE_PLANE || sums[0].area <= 0 || surface_length(&sums[0]) > SURFACE_COHERENT) return 1;
-            continue;
         }
         if (most == 0) break;
         ++count;
@@ -437,47 +435,106 @@ static inline int surface_planes(const SurfaceMesh* mesh, size_t from, size_t en
     return 1;
 }
 
+#define SURFACE_GROUP (VITRAIL_WORDS_PER_RANK * 32)  // cells that work goes by, all of one tile
+
+// The occupied cells of a group, in the order of their records.
+typedef struct {
+    uint end[SURFACE_GROUP];     // of their triangles in the list
+    ushort cell[SURFACE_GROUP];  // x, y, z in the tile: 3, 3 and 5 bits
+    uint count;
+} SurfaceCells;
+
+INLINE void surface_cells(global const uint* words, size_t group, global const uint* cursor, size_t index, SurfaceCells* cells) {
+    cells->count = 0u;
+    for (uint w = 0; w < VITRAIL_WORDS_PER_RANK; ++w) {
+        const size_t word = group * VITRAIL_WORDS_PER_RANK + w;
+        for (uint rest = words[word]; rest != 0u; rest &= rest - 1u) {
+            cells->cell[cells->count] = (ushort)(word % VITRAIL_WORDS_PER_TILE | (size_t)(31u - clz(rest & (0u - rest))) << 6);
+            cells->end[cells->count] = cursor[index + cells->count];
+            ++cells->count;
+        }
+    }
+}
+
+// Low corners of the cells `which` of a group, in the world; `low`: the lowest cell of its tile.
+INLINE void surface_corners(const vitrail_GridDesc* grid, const SurfaceCells* cells, const uint which[LANES], uint3 low, real8 corner[3]) {
+    int at[3][LANES];
+    for (int lane = 0; lane < LANES; ++lane) {
+        const uint cell = cells->cell[which[lane]];
+        at[0][lane] = (int)(low.x + (cell & 7u));
+        at[1][lane] = (int)(low.y + ((cell >> 3) & 7u));
+        at[2][lane] = (int)(low.z + (cell >> 6));
+    }
+    const real edge = REAL(grid->extent.x);
+    corner[0] = REAL(grid->origin.x) + LANES_REAL(vload8(0, at[0])) * edge;
+    corner[1] = REAL(grid->origin.y) + LANES_REAL(vload8(0, at[1])) * edge;
+    corner[2] = REAL(grid->origin.z) + LANES_REAL(vload8(0, at[2])) * edge;
+}
+
 // Records of occupied voxels, a group of 512 cells at a time; `planes`: the number of each voxel's planes where it has more than one, else 0.
-// With a table, only these: `planes` then says where a voxel's begin.
+// With a table, only these: `planes` then says where a voxel's begin. The triangles of a group stand in the list one voxel's after the other,
+// and are taken eight at a time whosever they are.
 kernel void surface_gather(const vitrail_GridDesc grid, global const float* positions, global const uint* indices, uint vertexCount,
                            global const float* normals, global const uint* words, global const uint* brickTiles, global const uint* rank,
                            global const uint* counts, global const uint* list, global const uint* cursor,
                            global vitrail_SurfaceVoxel* surface, global uint* planes, global vitrail_SurfaceVoxel* table, ulong count,
                            uint perItem) {
     const SurfaceMesh mesh = {&grid, positions, indices, vertexCount, normals, list};
+    SurfaceCells cells;
     FOR_RANGE(group, count, perItem) {
-        size_t index = rank[group];
-        for (uint w = 0; w < VITRAIL_WORDS_PER_RANK; ++w) {
-            const size_t word = group * VITRAIL_WORDS_PER_RANK + w;
-            uint rest = words[word];
-            if (rest == 0u) continue;
-            const size_t brick = word / VITRAIL_WORDS_PER_TILE, tile = brickTiles ? brickTiles[brick] : brick, column = tile / grid.size.w;
-            const uint inTile = (uint)(word % VITRAIL_WORDS_PER_TILE);
-            const uint x = (uint)(column % grid.tilesX) * 8u + (inTile & 7u), y = (uint)(column / grid.tilesX) * 8u + (inTile >> 3);
-            const uint zWord = (uint)(tile % grid.size.w) * 32u;
-            for (; rest != 0u; rest &= rest - 1u, ++index) {
-                if (table && !(surface[index].centroid & VITRAIL_SURFACE_SPLIT)) continue;
-                const uint z = zWord + (31u - clz(rest & (0u - rest)));
-                const real edge = REAL(grid.extent.x);
-                const Point corner = {REAL(grid.origin.x) + REAL(x) * edge, REAL(grid.origin.y) + REAL(y) * edge,
-                                      REAL(grid.origin.z) + REAL(z) * edge};
-                const size_t end = cursor[index];
-                SurfaceSum sums[VITRAIL_SURFACE_PLANES];
-                const int most = surface_planes(&mesh, end - counts[index], end, corner, sums);
-                if (most == 1) {
-                    surface[index] = surface_pack(&sums[0]);
-                    planes[index] = 0u;
-                    continue;
+        const size_t first = rank[group];
+        surface_cells(words, group, cursor, first, &cells);
+        if (cells.count == 0u) continue;
+        const size_t brick = group * VITRAIL_WORDS_PER_RANK / VITRAIL_WORDS_PER_TILE, tile = brickTiles ? brickTiles[brick] : brick,
+                     column = tile / grid.size.w;
+        const uint3 low = (uint3)((uint)(column % grid.tilesX) * 8u, (uint)(column / grid.tilesX) * 8u, (uint)(tile % grid.size.w) * 32u);
+        const size_t from = cells.end[0] - counts[first], last = cells.end[cells.count - 1u];
+        size_t ready = from;  // what lies before it in the list is in `parts`, or was
+        uint ahead = 0u;      // the cell of what lies behind
+        SurfaceEight parts;
+        for (uint k = 0u; k < cells.count; ++k) {
+            const size_t index = first + k, begin = k == 0u ? from : cells.end[k - 1u], end = cells.end[k];
+            if (table && !(surface[index].centroid & VITRAIL_SURFACE_SPLIT)) continue;
+            SurfaceSum sums[VITRAIL_SURFACE_PLANES];
+            real8 corner[3];
+            SurfaceEight all;
+            surface_zero_eight(&all);
+            for (size_t at = begin; !table && at < end;) {
+                if (at == ready) {
+                    uint which[LANES];
+                    for (int lane = 0; lane < LANES; ++lane) {
+                        while (ahead + 1u < cells.count && ready + (size_t)lane >= cells.end[ahead]) ++ahead;
+                        which[lane] = ahead;
+                    }
+                    surface_corners(&grid, &cells, which, low, corner);
+                    surface_eight(&mesh, ready, (int)min(last - ready, (size_t)LANES), corner, &parts);
+                    ready += LANES;
                 }
-                uint relations = 0u;
-                for (int i = 0; i + 1 < most; ++i)
-                    for (int k = i + 1; k < most; ++k) relations |= surface_relation(&sums[i], &sums[k]) << (i + k - 1) * 2;
-                const uint at = table ? planes[index] : 0u;
-                const vitrail_SurfaceVoxel head = {at, VITRAIL_SURFACE_SPLIT | VITRAIL_SURFACE_PRESENT | (uint)most, relations, 0u};
-                surface[index] = head;
-                if (!table) planes[index] = (uint)most;
-                for (int i = 0; table && i < most; ++i) table[at + (uint)i] = surface_pack(&sums[i]);
+                const size_t stop = min(ready, end);
+                const int8 lanes = LANES_IOTA_INT + (int)((long)ready - LANES - (long)at);  // places behind `at`
+                surface_add_eight(&parts, convert_long8((lanes >= 0) & (lanes < (int)(stop - at))), &all);
+                at = stop;
             }
+            surface_sum(&all, &sums[0]);
+            int most = 1;
+            if (table || !surface_coherent(&sums[0])) {
+                const uint which[LANES] = {k, k, k, k, k, k, k, k};
+                surface_corners(&grid, &cells, which, low, corner);
+                most = surface_planes(&mesh, begin, end, corner, sums);
+            }
+            if (most == 1) {
+                surface[index] = surface_pack(&sums[0]);
+                planes[index] = 0u;
+                continue;
+            }
+            uint relations = 0u;
+            for (int i = 0; i + 1 < most; ++i)
+                for (int j = i + 1; j < most; ++j) relations |= surface_relation(&sums[i], &sums[j]) << (i + j - 1) * 2;
+            const uint at = table ? planes[index] : 0u;
+            const vitrail_SurfaceVoxel head = {at, VITRAIL_SURFACE_SPLIT | VITRAIL_SURFACE_PRESENT | (uint)most, relations, 0u};
+            surface[index] = head;
+            if (!table) planes[index] = (uint)most;
+            for (int i = 0; table && i < most; ++i) table[at + (uint)i] = surface_pack(&sums[i]);
         }
     }
 }
