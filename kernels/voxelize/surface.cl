@@ -287,64 +287,135 @@ INLINE void surface_sum(const SurfaceEight* sums, SurfaceSum* sum) {
     for (int i = 0; i < 6; ++i) sum->square[i] = surface_across(sums->square[i]);
 }
 
-static inline float3 surface_mean(const long v[3], long area) { return (float3)((float)v[0], (float)v[1], (float)v[2]) / (float)area; }
+// Sums of eight planes, a lane each, on their way to their records.
+typedef struct {
+    SurfaceEight sums;
+    global vitrail_SurfaceVoxel* to[LANES];
+    int count;
+} SurfaceQueue;
 
-static inline uint surface_field(float value, float unit) { return (uint)((int)rint(clamp(value / unit, -511.0f, 511.0f)) + 512); }
+INLINE uint8 surface_field(float8 value, float8 unit) { return as_uint8(convert_int8(rint(clamp(value / unit, -511.0f, 511.0f)))) + 512u; }
 
-static inline vitrail_SurfaceVoxel surface_pack(const SurfaceSum* sum) {
-    vitrail_SurfaceVoxel out = {0u, 0u, 0u, 0u};
-    if (sum->area <= 0) return out;
-    float3 flat = surface_mean(sum->flat, sum->area), normal = surface_mean(sum->normal, sum->area);
-    const float flatLength = sqrt(dot(flat, flat));
-    if (!(flatLength > 1e-4f)) return out;  // opposite walls that cancel: nothing can be said
-    flat /= flatLength;
-    const float length = sqrt(dot(normal, normal));
-    const bool shaded = length > 1e-4f && dot(normal, flat) > 0.0f;
-    out.normal = frame_pack_normal(shaded ? normal / length : flat);
-    const float3 c = clamp(surface_mean(sum->centroid, sum->area), 0.0f, 1.0f);
-    out.centroid = VITRAIL_SURFACE_PRESENT | (uint)rint(c.x * 1023.0f) | (uint)rint(c.y * 1023.0f) << 10 | (uint)rint(c.z * 1023.0f) << 20;
-    float3 t, b;
-    normal = frame_unpack_normal(out.normal);
-    frame_tangents(normal, &t, &b);
-    // The shading normal as a linear function of the place along t and b, by least squares: covariances with it times the inverse of its own.
-    const real perArea = REAL(1) / (real)sum->area;
-    real place[3], shade[3];
+// frame_pack_normal, frame_unpack_normal and frame_tangents of eight.
+INLINE uint8 surface_pack_normal(const float8 n[3]) {
+    const float8 all = fabs(n[0]) + fabs(n[1]) + fabs(n[2]), u = n[0] / all, v = n[1] / all;
+    const int8 below = n[2] < 0.0f;
+    const float8 foldU = (1.0f - fabs(v)) * (u < 0.0f ? -1.0f : 1.0f), foldV = (1.0f - fabs(u)) * (v < 0.0f ? -1.0f : 1.0f);
+    const uint8 x = as_uint8(convert_int8(rint((below ? foldU : u) * 32767.0f))),
+                y = as_uint8(convert_int8(rint((below ? foldV : v) * 32767.0f)));
+    return (x & 0xffffu) | (y & 0xffffu) << 16;
+}
+INLINE void surface_unpack_normal(uint8 code, float8 n[3]) {
+    const float8 u = convert_float8(as_int8(code << 16) >> 16), v = convert_float8(as_int8(code) >> 16), z = 32767.0f - fabs(u) - fabs(v);
+    const float8 fold = z < 0.0f ? -z : (float8)(0.0f);
+    n[0] = u - copysign(fold, u);
+    n[1] = v - copysign(fold, v);
+    n[2] = z;
+    const float8 length = sqrt(surface_dot(n, n));
+    for (int i = 0; i < 3; ++i) n[i] /= length;
+}
+INLINE void surface_tangents(const float8 n[3], float8 t[3], float8 b[3]) {
+    const float8 s = n[2] < 0.0f ? (float8)(-1.0f) : (float8)(1.0f), a = -1.0f / (s + n[2]), c = n[0] * n[1] * a;
+    t[0] = 1.0f + s * n[0] * n[0] * a;
+    t[1] = s * c;
+    t[2] = -s * n[0];
+    b[0] = c;
+    b[1] = s + n[1] * n[1] * a;
+    b[2] = -n[1];
+}
+
+// Writes the records of what is queued.
+INLINE void surface_flush(SurfaceQueue* queue) {
+    const SurfaceEight* sum = &queue->sums;
+    const float8 area = convert_float8(sum->area);
+    float8 flat[3], normal[3], t[3], b[3];
+    uint8 centroid = (uint8)(VITRAIL_SURFACE_PRESENT);
+#pragma unroll
     for (int i = 0; i < 3; ++i) {
-        place[i] = (real)sum->centroid[i] * perArea - REAL(0.5);
-        shade[i] = (real)sum->normal[i] * perArea;
+        flat[i] = convert_float8(sum->flat[i]) / area;
+        normal[i] = convert_float8(sum->normal[i]) / area;
+        centroid |= as_uint8(convert_int8(rint(clamp(convert_float8(sum->centroid[i]) / area, 0.0f, 1.0f) * 1023.0f))) << (10 * i);
+    }
+    const float8 flatLength = sqrt(surface_dot(flat, flat)), length = sqrt(surface_dot(normal, normal));
+    const int8 said = (area > 0.0f) & (flatLength > 1e-4f);  // else there is nothing, or opposite walls cancel
+#pragma unroll
+    for (int i = 0; i < 3; ++i) flat[i] /= flatLength;
+    const int8 shaded = (length > 1e-4f) & (surface_dot(normal, flat) > 0.0f);
+#pragma unroll
+    for (int i = 0; i < 3; ++i) normal[i] = shaded ? normal[i] / length : flat[i];
+    const uint8 packed = surface_pack_normal(normal);
+    surface_unpack_normal(packed, normal);
+    surface_tangents(normal, t, b);
+    // The shading normal as a linear function of the place along t and b, by least squares: covariances with it times the inverse of its own.
+    const real8 perArea = LANES_OF(1) / LANES_REAL(sum->area);
+    real8 place[3], shade[3];
+#pragma unroll
+    for (int i = 0; i < 3; ++i) {
+        place[i] = LANES_REAL(sum->centroid[i]) * perArea - REAL(0.5);
+        shade[i] = LANES_REAL(sum->normal[i]) * perArea;
     }
     const int of[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    float3 row[3], own[3];
+    float8 nt[3], nb[3], pt[3], pb[3];
+#pragma unroll
     for (int i = 0; i < 3; ++i) {
-        float s[3], p[3];
+        float8 s[3], p[3];
+#pragma unroll
         for (int j = 0; j < 3; ++j) {
-            s[j] = (float)((real)sum->along[3 * i + j] * perArea - shade[i] * place[j]);
-            p[j] = (float)((real)sum->square[of[3 * i + j]] * perArea - place[i] * place[j]);
+            s[j] = convert_float8(LANES_REAL(sum->along[3 * i + j]) * perArea - shade[i] * place[j]);
+            p[j] = convert_float8(LANES_REAL(sum->square[of[3 * i + j]]) * perArea - place[i] * place[j]);
         }
-        row[i] = (float3)(s[0], s[1], s[2]);
-        own[i] = (float3)(p[0], p[1], p[2]);
+        nt[i] = surface_dot(s, t);
+        nb[i] = surface_dot(s, b);
+        pt[i] = surface_dot(p, t);
+        pb[i] = surface_dot(p, b);
     }
-    const float3 nt = (float3)(dot(row[0], t), dot(row[1], t), dot(row[2], t)),
-                 nb = (float3)(dot(row[0], b), dot(row[1], b), dot(row[2], b));
-    const float3 pt = (float3)(dot(own[0], t), dot(own[1], t), dot(own[2], t)),
-                 pb = (float3)(dot(own[0], b), dot(own[1], b), dot(own[2], b));
-    const float tt = dot(pt, t), tb = dot(pt, b), bb = dot(pb, b), determinant = tt * bb - tb * tb;
+    const float8 tt = surface_dot(pt, t), tb = surface_dot(pt, b), bb = surface_dot(pb, b), determinant = tt * bb - tb * tb;
     // d n / d t and d n / d b, then their components along t and b.
-    const bool known = !SURFACE_ONE_PLANE && shaded && determinant > 1e-12f;
-    const float3 dt = known ? (nt * bb - nb * tb) / determinant : (float3)(0.0f),
-                 db = known ? (nb * tt - nt * tb) / determinant : (float3)(0.0f);
-    const float g[4] = {dot(dt, t), dot(db, t), dot(dt, b), dot(db, b)};
-    float most = 0.0f;
-    for (int i = 0; i < 4; ++i) most = fmax(most, fabs(g[i]));
-    uint e = 0u;
-    float range = 2.44140625e-4f;  // 2^-12
-    for (; e < 15u && range < most; ++e) range *= 2.0f;
-    const float unit = range / 511.0f, along = 1.0f + dot(flat, normal);
-    out.slope0 = surface_field(g[0], unit) | surface_field(g[1], unit) << 10 | surface_field(g[2], unit) << 20 | (e & 3u) << 30;
-    out.slope1 = surface_field(g[3], unit) | surface_field(dot(flat, t) / along, 1.0f / 511.0f) << 10 |
-                 surface_field(dot(flat, b) / along, 1.0f / 511.0f) << 20 | (e >> 2) << 30;
-    return out;
+    const int8 known = SURFACE_ONE_PLANE ? (int8)(0) : shaded & (determinant > 1e-12f);
+    float8 dt[3], db[3];
+#pragma unroll
+    for (int i = 0; i < 3; ++i) {
+        dt[i] = known ? (nt[i] * bb - nb[i] * tb) / determinant : (float8)(0.0f);
+        db[i] = known ? (nb[i] * tt - nt[i] * tb) / determinant : (float8)(0.0f);
+    }
+    const float8 g[4] = {surface_dot(dt, t), surface_dot(db, t), surface_dot(dt, b), surface_dot(db, b)};
+    const float8 most = fmax(fmax(fabs(g[0]), fabs(g[1])), fmax(fabs(g[2]), fabs(g[3])));
+    uint8 e = (uint8)(0u);
+    float8 range = (float8)(2.44140625e-4f);  // 2^-12
+    for (int k = 0; k < 15; ++k) {
+        const int8 more = range < most;
+        e -= as_uint8(more);
+        range = more ? range * 2.0f : range;
+    }
+    const float8 unit = range / 511.0f, along = 1.0f + surface_dot(flat, normal), one = (float8)(1.0f / 511.0f);
+    const uint8 slope0 = surface_field(g[0], unit) | surface_field(g[1], unit) << 10 | surface_field(g[2], unit) << 20 | (e & 3u) << 30;
+    const uint8 slope1 = surface_field(g[3], unit) | surface_field(surface_dot(flat, t) / along, one) << 10 |
+                         surface_field(surface_dot(flat, b) / along, one) << 20 | (e >> 2) << 30;
+    const uint8 field[4] = {packed & as_uint8(said), centroid & as_uint8(said), slope0 & as_uint8(said), slope1 & as_uint8(said)};
+    for (int lane = 0; lane < queue->count; ++lane) {
+        const vitrail_SurfaceVoxel out = {((const uint*)&field[0])[lane], ((const uint*)&field[1])[lane], ((const uint*)&field[2])[lane],
+                                          ((const uint*)&field[3])[lane]};
+        *queue->to[lane] = out;
+    }
+    queue->count = 0;
 }
+
+// Has the record made of a plane's sums.
+static inline void surface_pack(SurfaceQueue* queue, const SurfaceSum* sum, global vitrail_SurfaceVoxel* to) {
+    const int lane = queue->count++;
+    queue->to[lane] = to;
+    ((long*)&queue->sums.area)[lane] = sum->area;
+    for (int i = 0; i < 3; ++i) {
+        ((long*)&queue->sums.centroid[i])[lane] = sum->centroid[i];
+        ((long*)&queue->sums.normal[i])[lane] = sum->normal[i];
+        ((long*)&queue->sums.flat[i])[lane] = sum->flat[i];
+    }
+    for (int i = 0; i < 9; ++i) ((long*)&queue->sums.along[i])[lane] = sum->along[i];
+    for (int i = 0; i < 6; ++i) ((long*)&queue->sums.square[i])[lane] = sum->square[i];
+    if (queue->count == LANES) surface_flush(queue);
+}
+
+static inline float3 surface_mean(const long v[3], long area) { return (float3)((float)v[0], (float)v[1], (float)v[2]) / (float)area; }
 
 #define SURFACE_AGREES 0.5f     // cosine to a seed, above which a triangle starts no plane of its own
 #define SURFACE_EVEN 0.999f     // length of the mean of normals of each of several planes
@@ -481,6 +552,9 @@ kernel void surface_gather(const vitrail_GridDesc grid, global const float* posi
                            uint perItem) {
     const SurfaceMesh mesh = {&grid, positions, indices, vertexCount, normals, list};
     SurfaceCells cells;
+    SurfaceQueue queue;
+    surface_zero_eight(&queue.sums);
+    queue.count = 0;
     FOR_RANGE(group, count, perItem) {
         const size_t first = rank[group];
         surface_cells(words, group, cursor, first, &cells);
@@ -523,7 +597,7 @@ kernel void surface_gather(const vitrail_GridDesc grid, global const float* posi
                 most = surface_planes(&mesh, begin, end, corner, sums);
             }
             if (most == 1) {
-                surface[index] = surface_pack(&sums[0]);
+                surface_pack(&queue, &sums[0], surface + index);
                 planes[index] = 0u;
                 continue;
             }
@@ -534,7 +608,8 @@ kernel void surface_gather(const vitrail_GridDesc grid, global const float* posi
             const vitrail_SurfaceVoxel head = {at, VITRAIL_SURFACE_SPLIT | VITRAIL_SURFACE_PRESENT | (uint)most, relations, 0u};
             surface[index] = head;
             if (!table) planes[index] = (uint)most;
-            for (int i = 0; table && i < most; ++i) table[at + (uint)i] = surface_pack(&sums[i]);
+            for (int i = 0; table && i < most; ++i) surface_pack(&queue, &sums[i], table + at + i);
         }
     }
+    surface_flush(&queue);
 }
