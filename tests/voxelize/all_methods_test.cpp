@@ -305,6 +305,26 @@ TEST_P(EveryVoxelizer, AFullTaskListChangesNothing) {
     EXPECT_EQ(all, fragments);
 }
 
+// Where only fragments are counted small triangles are done side by side, with other channels each alone.
+TEST(Channels, CountsAreTheSameWithAndWithoutOthers) {
+    Mesh mesh = test::closedTorus(Float3(30, 24, 64), 20, 5, Float3(1, 2, 3), 120, 40);
+    for (std::uint32_t t = 0; t < mesh.triangleCount(); ++t) mesh.materials.push_back(t % 5);
+    const Grid grid = Grid::box(Float3(0), 1.0f, Uint3(61, 50, 131));  // slices in five words
+    for (const char* name : {"conservative", "thin"})
+        for (const Precision precision : {Precision::best, Precision::single})
+            for (const Storage storage : {Storage::dense, Storage::bricks}) {
+                const test::WithPrecision set(queue(), precision);
+                queue().setStorage(storage);
+                const Voxels alone = voxelize(queue(), mesh, grid, voxelizerByName(name, {}, Channel::count | Channel::material)),
+                             all = voxelize(queue(), mesh, grid,
+                                            voxelizerByName(name, {}, Channel::count | Channel::material | Channel::normal));
+                queue().setStorage(Storage::automatic);
+                EXPECT_GT(alone.occupied(), 3000u);
+                EXPECT_EQ(alone.counts(), all.counts()) << name;
+                EXPECT_EQ(alone.materials(), all.materials()) << name;
+            }
+}
+
 // Buffers of the caller's are not checked on the host: what cannot be used is skipped and counted.
 TEST_P(EveryVoxelizer, CountsWhatItCannotUse) {
     const float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
