@@ -337,7 +337,7 @@ int main(int argc, char** argv) {
     // Both sides in turns, medians of five, unless told otherwise.
     return benchMain(argc, argv,
                      {"--benchmark_repetitions=5", "--benchmark_enable_random_interleaving=true", "--benchmark_report_aggregates_only=true",
-                      "--benchmark_min_time=0.1"},
+                      "--benchmark_min_time=0.05"},
                      [&](Queue& queue) {
                          static Bench bench(queue, timesOnly);
                          static const std::vector<Input> meshes = inputs();
