@@ -36,6 +36,8 @@ constexpr std::uint32_t kResolutions[] = {64, 128, 256, 512, 1024};
 constexpr std::uint32_t kSweepResolution = 256;
 /// Baselines take seconds on finer grids and on subdivided meshes, and are left out there.
 constexpr std::uint32_t kBaselineResolution = 256;
+/// What a mesh with holes winds around takes minutes a grid on finer ones.
+constexpr std::uint32_t kSolidResolution = 512;
 
 struct Input {
     std::string name;
@@ -288,6 +290,7 @@ void addAll(Bench& bench, const std::vector<Input>& meshes, bool withPeers) {
     for (const Input& input : meshes) {
         for (const std::uint32_t resolution : kResolutions) {
             if (input.scaling && resolution != kSweepResolution) continue;
+            if (kFamily == Family::solidVoxels && resolution > kSolidResolution) continue;
             const std::string group = input.name + "/" + std::to_string(resolution) + "/";
             for (const Method& method : methods()) {
                 if (method.family != kFamily) continue;
