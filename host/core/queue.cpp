@@ -152,6 +152,7 @@ void fillBytes(Queue& queue, Memory& memory, std::uint8_t value, std::size_t byt
 }
 
 void copyBytes(Queue& queue, const Memory& from, Memory& to, std::size_t bytes) {
+    if (bytes == 0) return;
     QueueState& state = *queue.state();
     guarded(state.device.get(), "copying device memory", [&] {
         cl::Event event;

@@ -9,34 +9,41 @@ namespace vitrail {
 inline namespace v0 {
 
 namespace {
-constexpr std::uint64_t kFragmentsMost = 1u << 28;  // three words each, and counters of them, fit 32 bits
+
+constexpr std::uint64_t kRecordsMost = 1u << 28;  // three words each, and counters of them, fit 32 bits
+
+/// Records of the bits that triangles set, if their number is about what it is for meshes of triangles of a voxel or two or of few.
+std::uint32_t recordsFor(const DeviceMesh& mesh, const Grid& grid) {
+    const std::uint64_t columns = static_cast<std::uint64_t>(grid.size().x) * grid.size().y;
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(4ull * mesh.triangleCount() + 8 * columns + 65536, kRecordsMost));
 }
+
+}  // namespace
 
 VoxelLists voxelizeLists(Queue& queue, const DeviceMesh& mesh, const Grid& grid) {
     if (!grid.isBox()) throw Error(ErrorCode::unsupported, {"lists of triangles need a box grid", "", "", "Grid::fit or Grid::box"});
     detail::Call call(queue, "listing the triangles of voxels, " + std::to_string(mesh.triangleCount()) + " of them");
     Workspace& workspace = queue.workspace();
-    // Fragments as the count meets them, if their number is about what it is for meshes of triangles of a voxel or two: {handed out, there}.
-    Buffer<std::uint32_t> fragments, places = workspace.take<std::uint32_t>(2, "count of fragments");
-    VoxelLists out{detail::runVoxelizer(queue, mesh, grid, Channel::count | Channel::material, Conservative::name.data(), "",
-                                        [&](detail::Pass& pass, const detail::MarkChannels* channels) {
-                                            if (channels == nullptr) return detail::launchMark(pass, Conservative::name.data(), nullptr);
-                                            const std::uint64_t most = 4ull * mesh.triangleCount() + 8 * *pass.out.occupied + 65536;
-                                            const auto capacity = static_cast<std::uint32_t>(std::min<std::uint64_t>(most, kFragmentsMost));
-                                            fragments = workspace.take<std::uint32_t>(3ull * capacity, "fragments");
-                                            const std::uint32_t first[] = {0, capacity};
-                                            pass.call.upload(places, first, 2);
-                                            detail::MarkChannels to = *channels;
-                                            to.list = &fragments;
-                                            to.cursor = &places;
-                                            if (!mesh.materials()) {  // all are 0
-                                                to.materials = nullptr;
-                                                pass.call.fill(pass.out.materials, 0);
-                                            }
-                                            detail::launchMark(pass, Conservative::name.data(), &to);
-                                        }),
-                   {},
-                   {}};
+    const detail::Program program{"voxelize/lists", detail::realOptions(queue)};
+    const char* method = Conservative::name.data();
+    Buffer<std::uint32_t> records, places = workspace.take<std::uint32_t>(2, "count of records");
+    const std::uint32_t first[] = {0, recordsFor(mesh, grid)};  // places handed out, places there
+    std::uint32_t recorded = 0;
+    const auto mark = [&](detail::Pass& pass, const detail::MarkChannels* channels) {
+        if (channels == nullptr) {
+            if (pass.out.bits) records = workspace.take<std::uint32_t>(3ull * first[1], "records of triangles");
+            pass.call.upload(places, first, 2);
+            detail::Pass marking{pass.call, pass.mesh, program, pass.out, pass.tasks};
+            const detail::MarkChannels to{.list = &records, .cursor = &places, .records = true};
+            return detail::launchMark(marking, "lists", &to);
+        }
+        recorded = places.read(queue)[0];
+        if (recorded > first[1]) return detail::launchMark(pass, method, channels);
+        if (!mesh.materials()) pass.call.fill(pass.out.materials, 0);
+        pass.call.launchRange(program, "lists_count", recorded, records, pass.out.bits, pass.out.rank, pass.out.counts, mesh.materials(),
+                              pass.out.materials);
+    };
+    VoxelLists out{detail::runVoxelizer(queue, mesh, grid, Channel::count | Channel::material, method, "", mark), {}, {}};
     const Buffer<std::uint32_t>& counts = out.voxels.countBuffer();
     call.step("lists", 0.5);
     out.ends = workspace.take<std::uint32_t>(out.voxels.occupied(), "list cursors");
@@ -47,18 +54,15 @@ VoxelLists voxelizeLists(Queue& queue, const DeviceMesh& mesh, const Grid& grid)
             ErrorCode::unsupported,
             {"a grid of " + grid.text() + " has " + std::to_string(total) + " fragments; lists hold 32 bits", "", "", "a coarser grid"});
     out.triangles = workspace.take<std::uint32_t>(total, "triangle lists");
-    const std::vector<std::uint32_t> handedOut = places.read(queue);
-    if (handedOut[0] <= handedOut[1]) {
-        const detail::Program program{"voxelize/lists", ""};
-        call.launchRange(program, "lists_fill", handedOut[0], fragments, out.ends, out.triangles);
-        call.launchRange(program, "lists_ends", counts.size(), out.ends, counts);
+    if (recorded <= first[1]) {  // each cursor ends where its list does
+        call.launchRange(program, "lists_fill", recorded, records, out.ends, out.triangles);
         return out;
     }
     Buffer<detail::Task> tasks = workspace.take<detail::Task>(detail::kTaskCapacity, "task list");
-    const detail::Program program{"voxelize/conservative", detail::realOptions(queue)};
-    detail::Pass pass{call, mesh, program, out.voxels.state(), tasks};
-    const detail::MarkChannels to{.list = &out.triangles, .cursor = &out.ends};  // each cursor ends where its list does
-    detail::launchMark(pass, "conservative", &to);
+    const detail::Program marking{std::string("voxelize/") + method, detail::realOptions(queue)};
+    detail::Pass pass{call, mesh, marking, out.voxels.state(), tasks};
+    const detail::MarkChannels to{.list = &out.triangles, .cursor = &out.ends};
+    detail::launchMark(pass, method, &to);
     return out;
 }
 

@@ -42,6 +42,7 @@ struct MarkChannels {
     const Buffer<std::uint32_t>* materials = nullptr;
     const Buffer<std::int64_t>*colourSums = nullptr, *orientationSums = nullptr;
     const Buffer<std::uint32_t>*list = nullptr, *cursor = nullptr;  // triangles of each voxel, and where its next one goes
+    bool records = false;  // bits are set, and noted in `list` (kernels/lib/records.cl); nothing is added to channels
 };
 
 /// What `mark` takes itself.
@@ -64,7 +65,10 @@ std::uint64_t estimateVoxelizer(const MeshInput& mesh, const Grid& grid, Channel
 /// Calls launch(first, count) for the triangles in batches, with a step of progress before each.
 void forTriangles(Pass& pass, const char* step, bool second, const std::function<void(std::uint32_t first, std::uint32_t count)>& launch);
 
-/// Calls run(arguments...) with MARK_BUFFERS of kernels/lib/mark.cl: bits are set where `channels` is null, else fragments added to them.
+/// Whether fragments are added; else bits are set.
+inline bool adds(const MarkChannels* channels) { return channels != nullptr && !channels->records; }
+
+/// Calls run(arguments...) with MARK_BUFFERS of kernels/lib/mark.cl.
 template <class Run>
 void withMarkBuffers(Pass& pass, const MarkChannels* channels, Run&& run) {
     const MarkChannels none{};
@@ -73,7 +77,7 @@ void withMarkBuffers(Pass& pass, const MarkChannels* channels, Run&& run) {
     const Buffer<std::uint32_t> empty;
     const Buffer<std::int64_t> emptySums;
     run(mesh.positions(), mesh.indices(), mesh.vertexCount(), mesh.materials(), mesh.colours(), mesh.texcoords(), mesh.texture(),
-        mesh.textureWidth(), mesh.textureHeight(), pass.out.bits, pass.out.bricks, channels != nullptr ? pass.out.rank : empty,
+        mesh.textureWidth(), mesh.textureHeight(), pass.out.bits, pass.out.bricks, adds(channels) ? pass.out.rank : empty,
         to.counts ? *to.counts : empty, to.normalSums ? *to.normalSums : emptySums, to.materials ? *to.materials : empty,
         to.colourSums ? *to.colourSums : emptySums, to.orientationSums ? *to.orientationSums : emptySums, to.list ? *to.list : empty,
         to.cursor ? *to.cursor : empty);
@@ -81,26 +85,26 @@ void withMarkBuffers(Pass& pass, const MarkChannels* channels, Run&& run) {
 
 /// "sampled: bits"
 inline std::string markStep(const char* method, const MarkChannels* channels) {
-    return std::string(method) + (channels != nullptr ? ": channels" : ": bits");
+    return std::string(method) + (adds(channels) ? ": channels" : ": bits");
 }
 
 /// 1 where right, up and along the columns make a left-handed frame, in which a surface is seen mirrored.
 std::uint32_t mirrored(const Grid& grid);
 
-/// Launches <method>_mark over the triangles and then over the tasks they left: sets bits where `channels` is null, else adds to them. Its
+/// Launches <method>_mark over the triangles and then over the tasks they left: adds to `channels`, or sets bits. Its
 /// first argument is the grid, then `options`, then MARK_PARAMETERS of kernels/lib/mark.cl.
 template <class... Options>
 void launchMark(Pass& pass, const char* method, const MarkChannels* channels, const Options&... options) {
     const vitrail_GridDesc desc = pass.out.grid.desc();
     const std::string kernel = std::string(method) + "_mark", step = markStep(method, channels);
     Buffer<std::uint32_t> scratch;
-    if (channels != nullptr) {  // what the first pass counted stays
+    if (adds(channels)) {  // what the first pass counted stays
         scratch = pass.call.queue().workspace().take<std::uint32_t>(kStatusWords, "counts");
         pass.call.fill(scratch, 0);
     }
-    const Buffer<std::uint32_t>& status = channels != nullptr ? scratch : pass.out.status;
+    const Buffer<std::uint32_t>& status = adds(channels) ? scratch : pass.out.status;
     withMarkBuffers(pass, channels, [&](const auto&... buffers) {
-        forTriangles(pass, step.c_str(), channels != nullptr, [&](std::uint32_t first, std::uint32_t count) {
+        forTriangles(pass, step.c_str(), adds(channels), [&](std::uint32_t first, std::uint32_t count) {
             pass.call.launchRangeOf(kLanes, pass.program, kernel.c_str(), count, desc, options..., buffers..., pass.tasks, kTaskCapacity,
                                     status, first, 0u);
         });

@@ -134,14 +134,15 @@ INLINE void bits_set(const Bits* to, const vitrail_GridDesc* grid, uint x, uint 
     if (bits_open(to, bits_tile(grid, x, y) + (z >> 5), &words)) atomic_or(words + bits_in_tile(x, y), mask);
 }
 
-// Index of bit `bit` of word `word` among all occupied voxels. Two words at a time, all of the group: a loop that may end anywhere costs more.
+// Index of bit `bit` of word `word` among all occupied voxels. Two words at a time, all of the group, and without a branch: where a loop ends
+// and which words are looked at is not foreseen.
 INLINE uint bits_rank(global const uint* bits, global const uint* rank, size_t word, uint bit) {
     const size_t group = word / VITRAIL_WORDS_PER_RANK;
     const uint in = (uint)(word % VITRAIL_WORDS_PER_RANK);
     global const ulong* pairs = (global const ulong*)bits + group * (VITRAIL_WORDS_PER_RANK / 2);
     uint index = rank[group];
 #pragma unroll
-    for (uint k = 0; k < VITRAIL_WORDS_PER_RANK / 2; ++k) index += (uint)popcount(k < in / 2u ? pairs[k] : 0ul);
+    for (uint k = 0; k < VITRAIL_WORDS_PER_RANK / 2; ++k) index += (uint)popcount(pairs[k] & (ulong)((long)k - (long)(in / 2u) >> 63));
     const ulong last = pairs[in / 2u] & ((1ul << ((in & 1u) * 32u + bit)) - 1ul);
     return index + (uint)popcount(last);
 }

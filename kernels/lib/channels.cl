@@ -20,10 +20,8 @@ typedef struct {
     global uint* material;
     global long* colourSum;
     global long* orientationSum;
-    // Triangles of each voxel, next free slot in cursor. Where fragments are counted: the fragments as they come, three words each (voxel,
-    // number within it, triangle); cursor[0]: how many places were handed out, cursor[1]: how many there are.
-    global uint* list;
-    global uint* cursor;
+    global uint* list;              // triangles of each voxel
+    global uint* cursor;            // next free slot
     global const uint* materials;   // of triangles
     global const float* colours;    // of vertices, four each
     global const float* texcoords;  // of vertices, two each
@@ -36,7 +34,6 @@ typedef struct {
     const Channels* channels;  // null: bits are set
     long normal[3], orientation[ORIENTATION_SUMS];
     uint material, triangle;
-    uint* places;           // of fragments: the next, and past the last that this work-item has
     Point corner, dual[2];  // weight k + 1 of a point of the plane is the product of dual[k] with its offset from the corner
     float4 colour[3];
     float2 texcoord[3];
@@ -122,36 +119,11 @@ static inline float4 channels_colour(const Share* share, uint x, uint y, uint z)
     return clamp(colour, 0.0f, 1.0f);
 }
 
-#define CHANNELS_PLACES 64u
-#define CHANNELS_NO_VOXEL 0xffffffffu
-
-static inline void channels_place(const Channels* channels, uint place, uint index, uint before, uint triangle) {
-    if (place < channels->cursor[1]) vstore3((uint3)(index, before, triangle), place, channels->list);
-}
-
-// Notes a fragment, in a place of this work-item's.
-static inline void channels_fragment(const Share* share, uint index, uint before) {
-    if (share->places[0] == share->places[1]) {
-        share->places[0] = atomic_add(share->channels->cursor, CHANNELS_PLACES);
-        share->places[1] = share->places[0] + CHANNELS_PLACES;
-    }
-    channels_place(share->channels, share->places[0]++, index, before, share->triangle);
-}
-
-// Marks the places that are left over.
-static inline void channels_close(const Channels* channels, uint places[2]) {
-    while (places[0] != places[1]) channels_place(channels, places[0]++, CHANNELS_NO_VOXEL, 0u, 0u);
-}
-
 // Counts `times` fragments of the triangle in a voxel, lists the triangle and its material there.
 static inline void channels_count(const Share* share, size_t index, uint times) {
     const Channels* channels = share->channels;
-    if (channels->count) {
-        const uint before = atomic_add(channels->count + index, times);
-        if (channels->list) channels_fragment(share, (uint)index, before);
-    } else if (channels->list) {
-        channels->list[atomic_inc(channels->cursor + index)] = share->triangle;
-    }
+    if (channels->count) atomic_add(channels->count + index, times);
+    if (channels->list) channels->list[atomic_inc(channels->cursor + index)] = share->triangle;
     if (channels->material) atomic_min(channels->material + index, share->material);
 }
 

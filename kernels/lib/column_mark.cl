@@ -3,6 +3,9 @@
 #define VITRAIL_LIB_COLUMN_MARK
 #include "lib/column_run.cl"
 #include "lib/mark.cl"
+#ifdef COLUMN_RECORDS  // bits are noted as they are set, and nothing is added to channels
+#include "lib/records.cl"
+#endif
 #pragma OPENCL FP_CONTRACT OFF
 
 #define COLUMN_SMALL 8    // columns along x and y of a triangle that is done in blocks of four by two
@@ -15,14 +18,29 @@ typedef struct {
     Bits bits;  // unless there are channels
     BitsQueue* queue;
     bool near;  // words are in the cache: an atomic costs less than to look first
+#ifdef COLUMN_RECORDS
+    Records* records;
+#endif
     const Channels* channels;
     uint triangle;
     Share share;
 } Mark;
 
+// Notes what a triangle, or each of eight, sets in eight words.
+INLINE void column_note_eight(const Mark* mark, uint8 tile, uint8 inTile, uint8 mask, const uint triangles[LANES]) {
+#ifdef COLUMN_RECORDS
+    if (mark->records->list) records_add(mark->records, mark->bits.bricks, tile, inTile, mask, triangles);
+#endif
+}
+INLINE void column_note(const Mark* mark, size_t tile, uint inTile, uint8 mask) {
+    const uint t = mark->triangle, triangles[LANES] = {t, t, t, t, t, t, t, t};
+    column_note_eight(mark, (uint8)((uint)tile), LANES_IOTA_UINT + inTile, mask, triangles);
+}
+
 // Marks cells of four columns in a tile, where there is room.
 INLINE void column_mark_half(const Mark* mark, size_t tile, uint inTile, uint4 mask) {
     BitsQueue* queue = mark->queue;
+    column_note(mark, tile, inTile, (uint8)(mask, (uint4)(0u)));
     const ulong pair = bits_pair(tile, inTile);
     if (mark->near) {
         const ulong2 two = as_ulong2(mask);
@@ -46,8 +64,10 @@ INLINE void column_mark_row(const Mark* mark, int x, int y, int8 first, int8 end
             bits_room(&mark->bits, queue, 4u);
             bits_expect(&mark->bits, pair);
             vstore4(pair + (ulong4)(0, 1, 2, 3), 0, queue->pair + queue->count);
-            vstore4(as_ulong4(bits_masks(first - block * 32, end - block * 32)), 0, queue->mask + queue->count);
+            const uint8 mask = bits_masks(first - block * 32, end - block * 32);
+            vstore4(as_ulong4(mask), 0, queue->mask + queue->count);
             queue->count += 4u;
+            column_note(mark, tile + (size_t)block, bits_in_tile((uint)x, (uint)y), mask);
         }
         return;
     }
@@ -154,6 +174,7 @@ INLINE void column_mark_lanes(Mark* mark, const uint triangles[LANES], uint8 til
         return;
     }
     BitsQueue* queue = mark->queue;
+    column_note_eight(mark, tile, inTile, mask, triangles);
     vstore8(convert_ulong8(tile) * BITS_PAIRS_PER_TILE + convert_ulong8(inTile >> 1), 0, queue->pair + queue->count);
     vstore8(convert_ulong8(mask) << convert_ulong8((inTile & 1u) * 32u), 0, queue->mask + queue->count);
     queue->count += LANES;
@@ -226,6 +247,18 @@ INLINE int8 column_small(const Runs* runs) {
            (runs->last[2] - runs->first[2] < 31) & (runs->state == RUN_INSIDE);
 }
 
+#ifdef COLUMN_RECORDS
+#define COLUMN_TO(mark)                       \
+    Records records = {list, cursor, 0u, 0u}; \
+    if (!words) records.list = 0;             \
+    mark.records = &records;                  \
+    mark.channels = 0;
+#define COLUMN_CLOSE(mark) records_close(mark.records);
+#else
+#define COLUMN_TO(mark) mark.channels = rank ? &channels : 0;
+#define COLUMN_CLOSE(mark)
+#endif
+
 #define COLUMN_MARK(thin)                                                                                                    \
     const Channels channels = MARK_CHANNELS;                                                                                 \
     const Bits bits = MARK_BITS;                                                                                             \
@@ -236,11 +269,9 @@ INLINE int8 column_small(const Runs* runs) {
     mark.bits = bits;                                                                                                        \
     mark.near = !bricks && (ulong)grid.tilesX * ((grid.size.y + 7u) / 8u) * grid.size.w <= COLUMN_NEAR;                      \
     mark.queue = &queue;                                                                                                     \
-    mark.channels = rank ? &channels : 0;                                                                                    \
-    uint places[2] = {0u, 0u};                                                                                               \
-    mark.share.places = places;                                                                                              \
+    COLUMN_TO(mark)                                                                                                          \
     mark.share.channels = mark.channels;                                                                                     \
-    const bool aside = groups || (rank && !channels_only_count(&channels));                                                  \
+    const bool aside = groups || (mark.channels && !channels_only_count(&channels));                                         \
     MARK_EIGHTS(triangles, blocks, live, {                                                                                   \
         Runs runs;                                                                                                           \
         run_setup(thin, &grid, positions, indices, vertexCount, triangles, live, &runs);                                     \
@@ -252,7 +283,7 @@ INLINE int8 column_small(const Runs* runs) {
             column_triangle(&runs, lane, positions, indices, vertexCount, blocks[lane], &mark, tasks, taskCapacity, status); \
         }                                                                                                                    \
     })                                                                                                                       \
-    channels_close(&channels, places);                                                                                       \
+    COLUMN_CLOSE(mark)                                                                                                       \
     bits_flush(&bits, &queue);
 
 #endif

@@ -14,6 +14,7 @@ typedef double8 real8;
 #define LANES_OF(x) ((real8)(REAL(x)))
 #define LANES_IOTA ((real8)(0, 1, 2, 3, 4, 5, 6, 7))
 #define LANES_IOTA_INT ((int8)(0, 1, 2, 3, 4, 5, 6, 7))
+#define LANES_IOTA_UINT ((uint8)(0u, 1u, 2u, 3u, 4u, 5u, 6u, 7u))
 
 INLINE real8 lanes_min(real8 a, real8 b) { return a < b ? a : b; }
 INLINE real8 lanes_max(real8 a, real8 b) { return a > b ? a : b; }

@@ -16,12 +16,17 @@ typedef struct {
     long area, centroid[3], normal[3], flat[3], along[9], square[6];
 } SurfaceSum;
 
-// The same of the parts of eight triangles in a voxel, a lane each, and their unit normals.
+// Eight of them, a lane each.
 typedef struct {
     long8 area, centroid[3], normal[3], flat[3], along[9], square[6];
+} SurfaceSums;
+
+// The same of the parts of eight triangles in a voxel, and their unit normals.
+typedef struct {
+    int8 area, centroid[3], normal[3], flat[3], along[9], square[6];
     float8 unit[3];
     uint triangle[LANES];
-} SurfaceEight;
+} SurfaceParts;
 
 typedef struct {
     const vitrail_GridDesc* grid;
@@ -33,7 +38,7 @@ typedef struct {
 } SurfaceMesh;
 
 // Toward zero in fixed point, of the lanes in `which` (-1); |value| < 2.
-INLINE long8 surface_fixed(float8 value, int8 which) { return convert_long8(convert_int8(value * SURFACE_ONE) & which); }
+INLINE int8 surface_fixed(float8 value, int8 which) { return convert_int8(value * SURFACE_ONE) & which; }
 
 INLINE void surface_cross(const float8 a[3], const float8 b[3], float8 out[3]) {
     out[0] = a[1] * b[2] - a[2] * b[1];
@@ -116,7 +121,7 @@ INLINE void surface_clip(const float8 v[3][3], const float8 n[3], const float8 l
 }
 
 // The parts of triangles list[at] to list[at + live - 1] in voxels whose low corners lie at `corner` of the world, 1 <= live <= 8.
-INLINE void surface_eight(const SurfaceMesh* mesh, size_t at, int live, const real8 corner[3], SurfaceEight* out) {
+INLINE void surface_eight(const SurfaceMesh* mesh, size_t at, int live, const real8 corner[3], SurfaceParts* out) {
     const real scale = REAL(1) / REAL(mesh->grid->extent.x);
     float corners[9][LANES], normals[9][LANES];
     int usable[LANES];
@@ -252,7 +257,7 @@ static inline void surface_add(const SurfaceSum* part, SurfaceSum* sum) {
 
 INLINE long surface_across(long8 v) { return ((v.s0 + v.s1) + (v.s2 + v.s3)) + ((v.s4 + v.s5) + (v.s6 + v.s7)); }
 
-INLINE void surface_zero_eight(SurfaceEight* sums) {
+INLINE void surface_zero(SurfaceSums* sums) {
     sums->area = (long8)(0);
     for (int i = 0; i < 3; ++i) sums->centroid[i] = sums->normal[i] = sums->flat[i] = (long8)(0);
     for (int i = 0; i < 9; ++i) sums->along[i] = (long8)(0);
@@ -260,18 +265,18 @@ INLINE void surface_zero_eight(SurfaceEight* sums) {
 }
 
 // Adds the parts of the lanes in `which` (-1), lane by lane.
-INLINE void surface_add_eight(const SurfaceEight* parts, long8 which, SurfaceEight* sums) {
-    sums->area += parts->area & which;
+INLINE void surface_add_parts(const SurfaceParts* parts, int8 which, SurfaceSums* sums) {
+    sums->area += convert_long8(parts->area & which);
     for (int i = 0; i < 3; ++i) {
-        sums->centroid[i] += parts->centroid[i] & which;
-        sums->normal[i] += parts->normal[i] & which;
-        sums->flat[i] += parts->flat[i] & which;
+        sums->centroid[i] += convert_long8(parts->centroid[i] & which);
+        sums->normal[i] += convert_long8(parts->normal[i] & which);
+        sums->flat[i] += convert_long8(parts->flat[i] & which);
     }
-    for (int i = 0; i < 9; ++i) sums->along[i] += parts->along[i] & which;
-    for (int i = 0; i < 6; ++i) sums->square[i] += parts->square[i] & which;
+    for (int i = 0; i < 9; ++i) sums->along[i] += convert_long8(parts->along[i] & which);
+    for (int i = 0; i < 6; ++i) sums->square[i] += convert_long8(parts->square[i] & which);
 }
 
-INLINE void surface_sum(const SurfaceEight* sums, SurfaceSum* sum) {
+INLINE void surface_sum(const SurfaceSums* sums, SurfaceSum* sum) {
     sum->area = surface_across(sums->area);
     for (int i = 0; i < 3; ++i) {
         sum->centroid[i] = surface_across(sums->centroid[i]);

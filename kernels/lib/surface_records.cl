@@ -13,7 +13,7 @@
 
 // Sums of eight planes, a lane each, on their way to their records.
 typedef struct {
-    SurfaceEight sums;
+    SurfaceSums sums;
     global vitrail_SurfaceVoxel* to[LANES];
     int count;
 } SurfaceQueue;
@@ -50,7 +50,7 @@ INLINE void surface_tangents(const float8 n[3], float8 t[3], float8 b[3]) {
 
 // Writes the records of what is queued.
 INLINE void surface_flush(SurfaceQueue* queue) {
-    const SurfaceEight* sum = &queue->sums;
+    const SurfaceSums* sum = &queue->sums;
     const float8 area = convert_float8(sum->area);
     float8 flat[3], normal[3], t[3], b[3];
     uint8 centroid = (uint8)(VITRAIL_SURFACE_PRESENT);

@@ -23,35 +23,46 @@ static inline uint surface_relation(const SurfaceSum* a, const SurfaceSum* b) {
     return ab < -0.005f && ba < -0.005f ? VITRAIL_SURFACE_CONVEX : ab > 0.005f && ba > 0.005f ? VITRAIL_SURFACE_CONCAVE : 0u;
 }
 
-#define SURFACE_KEPT 4  // eights of a voxel that are not clipped again
+#define SURFACE_KEPT 16  // eights of parts that are not clipped again
 
 // Whether one plane does for parts that add up to this.
 static inline bool surface_coherent(const SurfaceSum* sum) {
     return SURFACE_ONE_PLANE || sum->area <= 0 || surface_length(sum) > SURFACE_COHERENT;
 }
 
+// The triangles of a voxel, list[begin] to list[end - 1], and what they add. Eight `i` of `kept`, modulo SURFACE_KEPT, is that of the
+// triangles from list[base + 8 i] on, if all of the voxel are there; else each is made anew, in `own`.
+typedef struct {
+    const SurfaceMesh* mesh;
+    size_t base, begin, end;
+    const SurfaceParts* kept;
+    SurfaceParts* own;
+    real8 corner[3];
+} SurfaceOf;
+
+// The parts of eight triangles of those from list[at] on, and which lanes (-1) are the voxel's.
+INLINE const SurfaceParts* surface_parts_of(const SurfaceOf* of, size_t at, int8* which) {
+    *which = (LANES_IOTA_INT >= (int)(max(of->begin, at) - at)) & (LANES_IOTA_INT < (int)min(of->end - at, (size_t)LANES));
+    if (of->kept) return of->kept + (at - of->base) / LANES % SURFACE_KEPT;
+    surface_eight(of->mesh, at, (int)min(of->end - at, (size_t)LANES), of->corner, of->own);
+    return of->own;
+}
+
 // The planes of a voxel of which one does not do: around seeds, each the largest of the triangles that agree with no seed before (of equal ones
 // the lowest). A triangle goes to the seed it agrees with best. sums[0]: of all parts; stays so where there is one plane.
-static inline int surface_planes(const SurfaceMesh* mesh, size_t from, size_t end, const real8 corner[3],
-                                 SurfaceSum sums[VITRAIL_SURFACE_PLANES]) {
-    SurfaceEight kept[SURFACE_KEPT];
-    const int eights = (int)((end - from + LANES - 1) / LANES);
+static inline int surface_planes(const SurfaceOf* of, SurfaceSum sums[VITRAIL_SURFACE_PLANES]) {
+    const size_t first = of->begin - (of->begin - of->base) % LANES;
     float3 seed[VITRAIL_SURFACE_PLANES];
     int count = 0;
-    SurfaceEight all;
-    for (int e = 0; eights <= SURFACE_KEPT && e < eights; ++e) {
-        const size_t at = from + (size_t)e * LANES;
-        surface_eight(mesh, at, (int)min(end - at, (size_t)LANES), corner, &kept[e]);
-    }
+    int8 mine;
     while (count < VITRAIL_SURFACE_PLANES) {
-        long most = 0;
+        int most = 0;
         uint lowest = 0u;
-        for (int e = 0; e < eights; ++e) {
-            SurfaceEight* parts = &kept[e % SURFACE_KEPT];
-            const size_t at = from + (size_t)e * LANES;
-            if (eights > SURFACE_KEPT) surface_eight(mesh, at, (int)min(end - at, (size_t)LANES), corner, parts);
+        for (size_t at = first; at < of->end; at += LANES) {
+            const SurfaceParts* parts = surface_parts_of(of, at, &mine);
+            const int8 areas = parts->area & mine;
             for (int lane = 0; lane < LANES; ++lane) {
-                const long area = ((const long*)&parts->area)[lane];
+                const int area = lanes_int_at(&areas, lane);
                 if (area <= 0 || area < most || (area == most && parts->triangle[lane] >= lowest)) continue;
                 const float3 flat = (float3)(((const float*)&parts->unit[0])[lane], ((const float*)&parts->unit[1])[lane],
                                              ((const float*)&parts->unit[2])[lane]);
@@ -67,23 +78,20 @@ static inline int surface_planes(const SurfaceMesh* mesh, size_t from, size_t en
         ++count;
     }
     if (count < 2) return 1;
-    for (int i = 0; i < count; ++i) {
-        surface_zero_eight(&all);
-        for (int e = 0; e < eights; ++e) {
-            SurfaceEight* parts = &kept[e % SURFACE_KEPT];
-            const size_t at = from + (size_t)e * LANES;
-            if (eights > SURFACE_KEPT) surface_eight(mesh, at, (int)min(end - at, (size_t)LANES), corner, parts);
-            float8 best = (float8)(-2.0f);
-            int8 whose = (int8)(0);
-            for (int k = 0; k < count; ++k) {
-                const float8 agreement = parts->unit[0] * seed[k].x + parts->unit[1] * seed[k].y + parts->unit[2] * seed[k].z;
-                whose = agreement > best ? (int8)(k) : whose;
-                best = agreement > best ? agreement : best;
-            }
-            surface_add_eight(parts, convert_long8(whose == i), &all);
+    SurfaceSums all[VITRAIL_SURFACE_PLANES];
+    for (int i = 0; i < count; ++i) surface_zero(&all[i]);
+    for (size_t at = first; at < of->end; at += LANES) {
+        const SurfaceParts* parts = surface_parts_of(of, at, &mine);
+        float8 best = (float8)(-2.0f);
+        int8 whose = (int8)(0);
+        for (int i = 0; i < count; ++i) {
+            const float8 agreement = parts->unit[0] * seed[i].x + parts->unit[1] * seed[i].y + parts->unit[2] * seed[i].z;
+            whose = agreement > best ? (int8)(i) : whose;
+            best = agreement > best ? agreement : best;
         }
-        surface_sum(&all, &sums[i]);
+        for (int i = 0; i < count; ++i) surface_add_parts(parts, mine & (whose == i), &all[i]);
     }
+    for (int i = 0; i < count; ++i) surface_sum(&all[i], &sums[i]);
     bool even = true;
     for (int i = 0; i < count; ++i) even = even && sums[i].area > 0 && surface_length(&sums[i]) > SURFACE_EVEN;
     // Edges that bend one way; where they do not, a plane that ends at some of the others would leave holes.
@@ -142,7 +150,8 @@ kernel void surface_gather(const vitrail_GridDesc grid, global const float* posi
     const SurfaceMesh mesh = {&grid, positions, indices, vertexCount, normals, list};
     SurfaceCells cells;
     SurfaceQueue queue;
-    surface_zero_eight(&queue.sums);
+    SurfaceParts kept[SURFACE_KEPT], own;
+    surface_zero(&queue.sums);
     queue.count = 0;
     FOR_RANGE(group, count, perItem) {
         const size_t first = rank[group];
@@ -152,38 +161,40 @@ kernel void surface_gather(const vitrail_GridDesc grid, global const float* posi
                      column = tile / grid.size.w;
         const uint3 low = (uint3)((uint)(column % grid.tilesX) * 8u, (uint)(column / grid.tilesX) * 8u, (uint)(tile % grid.size.w) * 32u);
         const size_t from = cells.end[0] - counts[first], last = cells.end[cells.count - 1u];
-        size_t ready = from;  // what lies before it in the list is in `parts`, or was
+        size_t ready = from;  // what lies before it in the list is in `kept`, or was
         uint ahead = 0u;      // the cell of what lies behind
-        SurfaceEight parts;
         for (uint k = 0u; k < cells.count; ++k) {
             const size_t index = first + k, begin = k == 0u ? from : cells.end[k - 1u], end = cells.end[k];
             if (table && !(surface[index].centroid & VITRAIL_SURFACE_SPLIT)) continue;
             SurfaceSum sums[VITRAIL_SURFACE_PLANES];
-            real8 corner[3];
-            SurfaceEight all;
-            surface_zero_eight(&all);
+            SurfaceSums all;
+            surface_zero(&all);
             for (size_t at = begin; !table && at < end;) {
+                SurfaceParts* parts = kept + (at - from) / LANES % SURFACE_KEPT;
                 if (at == ready) {
                     uint which[LANES];
+                    real8 corner[3];
                     for (int lane = 0; lane < LANES; ++lane) {
                         while (ahead + 1u < cells.count && ready + (size_t)lane >= cells.end[ahead]) ++ahead;
                         which[lane] = ahead;
                     }
                     surface_corners(&grid, &cells, which, low, corner);
-                    surface_eight(&mesh, ready, (int)min(last - ready, (size_t)LANES), corner, &parts);
+                    surface_eight(&mesh, ready, (int)min(last - ready, (size_t)LANES), corner, parts);
                     ready += LANES;
                 }
                 const size_t stop = min(ready, end);
                 const int8 lanes = LANES_IOTA_INT + (int)((long)ready - LANES - (long)at);  // places behind `at`
-                surface_add_eight(&parts, convert_long8((lanes >= 0) & (lanes < (int)(stop - at))), &all);
+                surface_add_parts(parts, (lanes >= 0) & (lanes < (int)(stop - at)), &all);
                 at = stop;
             }
             surface_sum(&all, &sums[0]);
             int most = 1;
             if (table || !surface_coherent(&sums[0])) {
                 const uint which[LANES] = {k, k, k, k, k, k, k, k};
-                surface_corners(&grid, &cells, which, low, corner);
-                most = surface_planes(&mesh, begin, end, corner, sums);
+                const bool there = !table && ready - (begin - (begin - from) % LANES) <= SURFACE_KEPT * LANES;
+                SurfaceOf of = {&mesh, there ? from : begin, begin, end, there ? kept : 0, &own};
+                surface_corners(&grid, &cells, which, low, of.corner);
+                most = surface_planes(&of, sums);
             }
             if (most == 1) {
                 surface_pack(&queue, &sums[0], surface + index);
