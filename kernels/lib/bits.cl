@@ -142,7 +142,7 @@ INLINE uint bits_rank(global const uint* bits, global const uint* rank, size_t w
     global const ulong* pairs = (global const ulong*)bits + group * (VITRAIL_WORDS_PER_RANK / 2);
     uint index = rank[group];
 #pragma unroll
-    for (uint k = 0; k < VITRAIL_WORDS_PER_RANK / 2; ++k) index += (uint)popcount(pairs[k] & (ulong)((long)k - (long)(in / 2u) >> 63));
+    for (uint k = 0; k < VITRAIL_WORDS_PER_RANK / 2; ++k) index += (uint)popcount(pairs[k] & (ulong)(((long)k - (long)(in / 2u)) >> 63));
     const ulong last = pairs[in / 2u] & ((1ul << ((in & 1u) * 32u + bit)) - 1ul);
     return index + (uint)popcount(last);
 }

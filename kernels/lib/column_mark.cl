@@ -30,6 +30,8 @@ typedef struct {
 INLINE void column_note_eight(const Mark* mark, uint8 tile, uint8 inTile, uint8 mask, const uint triangles[LANES]) {
 #ifdef COLUMN_RECORDS
     if (mark->records->list) records_add(mark->records, mark->bits.bricks, tile, inTile, mask, triangles);
+#else
+    (void)mark, (void)tile, (void)inTile, (void)mask, (void)triangles;
 #endif
 }
 INLINE void column_note(const Mark* mark, size_t tile, uint inTile, uint8 mask) {
@@ -247,6 +249,32 @@ INLINE int8 column_small(const Runs* runs) {
            (runs->last[2] - runs->first[2] < 31) & (runs->state == RUN_INSIDE);
 }
 
+// Which of them (-1) have a box of one cell along two axes, in at most two columns, that the grid has not clipped: they meet all of its cells.
+INLINE int8 column_boxes(const vitrail_GridDesc* grid, const Runs* runs) {
+    const int8 x = runs->last[0] - runs->first[0], y = runs->last[1] - runs->first[1], z = runs->last[2] - runs->first[2];
+    const int8 whole = (min(min(runs->first[0], runs->first[1]), runs->first[2]) > 0) & (runs->last[0] < (int)grid->size.x - 1) &
+                       (runs->last[1] < (int)grid->size.y - 1) & (runs->last[2] < (int)grid->size.z - 1);
+    return whole & (runs->state == RUN_INSIDE) & ((((x | y) == 0) & (z < 31)) | ((z == 0) & (x + y == 1)));
+}
+
+// Marks the boxes of those in `which`: the first column's part, and that of the last where it is another.
+INLINE void column_mark_boxes(const Runs* runs, const uint triangles[LANES], int8 which, Mark* mark) {
+    const uint8 z = as_uint8(runs->first[2]), height = as_uint8(runs->last[2]) - z + 1u, shift = z & 31u, ones = (uint8)(0xffffffffu);
+    const uint8 mask = ~(ones << height) & as_uint8(which), over = as_uint8((shift + height > 32u) & which);
+    const bool across = lanes_int_least(as_int8(over)) != 0;
+    const int8 other = which & ((runs->first[0] != runs->last[0]) | (runs->first[1] != runs->last[1]));
+    if (!mark->channels) bits_room(&mark->bits, mark->queue, 3u * LANES);
+    const uint8 x0 = as_uint8(runs->first[0]), y0 = as_uint8(runs->first[1]), x1 = as_uint8(runs->last[0]), y1 = as_uint8(runs->last[1]);
+    const uint8 tile = ((y0 >> 3) * mark->grid->tilesX + (x0 >> 3)) * mark->grid->size.w + (z >> 5), inTile = (y0 & 7u) * 8u + (x0 & 7u);
+    column_mark_lanes(mark, triangles, tile, inTile, mask << shift);
+    if (across) column_mark_lanes(mark, triangles, tile - over, inTile, (mask >> (32u - shift)) & over);
+    if (lanes_int_least(other) != 0)
+        column_mark_lanes(mark, triangles, ((y1 >> 3) * mark->grid->tilesX + (x1 >> 3)) * mark->grid->size.w + (z >> 5),
+                          (y1 & 7u) * 8u + (x1 & 7u), (mask << shift) & as_uint8(other));
+}
+
+#define COLUMN_BOXES 5  // of eight triangles, from which on it pays to do the others with others of their kind
+
 #ifdef COLUMN_RECORDS
 #define COLUMN_TO(mark)                       \
     Records records = {list, cursor, 0u, 0u}; \
@@ -272,9 +300,41 @@ INLINE int8 column_small(const Runs* runs) {
     COLUMN_TO(mark)                                                                                                          \
     mark.share.channels = mark.channels;                                                                                     \
     const bool aside = groups || (mark.channels && !channels_only_count(&channels));                                         \
-    MARK_EIGHTS(triangles, blocks, live, {                                                                                   \
+    MARK_RANGE                                                                                                               \
+    uint waiting[2 * LANES]; /* triangles */                                                                                 \
+    int waits = 0;                                                                                                           \
+    for (size_t i = markFrom; i < markEnd || waits != 0;) {                                                                  \
+        uint triangles[LANES];                                                                                               \
+        int blocks[LANES];                                                                                                   \
+        int8 live;                                                                                                           \
+        const bool fresh = i < markEnd && waits < LANES;                                                                     \
+        if (fresh) {                                                                                                         \
+            MARK_TAKE(i, triangles, blocks, live)                                                                            \
+            i += markStep;                                                                                                   \
+        } else {                                                                                                             \
+            const int taken = min(waits, LANES);                                                                             \
+            waits -= taken;                                                                                                  \
+            live = LANES_IOTA_INT < taken;                                                                                   \
+            for (int lane = 0; lane < LANES; ++lane) {                                                                       \
+                triangles[lane] = waiting[waits + min(lane, taken - 1)];                                                     \
+                blocks[lane] = -1;                                                                                           \
+            }                                                                                                                \
+        }                                                                                                                    \
         Runs runs;                                                                                                           \
-        run_setup(thin, &grid, positions, indices, vertexCount, triangles, live, &runs);                                     \
+        RunCorners corners;                                                                                                  \
+        run_boxes(&grid, positions, indices, vertexCount, triangles, live, &corners, &runs);                                 \
+        if (!thin && fresh && !aside && perItem > LANES) {                                                                   \
+            const int8 boxes = column_boxes(&grid, &runs);                                                                   \
+            if (lanes_int_sum(boxes) <= -COLUMN_BOXES) {                                                                     \
+                column_mark_boxes(&runs, triangles, boxes, &mark);                                                           \
+                for (int lane = 0; lane < LANES; ++lane) {                                                                   \
+                    waiting[waits] = triangles[lane];                                                                        \
+                    waits += (lanes_int_at(&boxes, lane) + 1) & -lanes_int_at(&live, lane);                                  \
+                }                                                                                                            \
+                continue;                                                                                                    \
+            }                                                                                                                \
+        }                                                                                                                    \
+        run_setup(thin, &corners, &runs);                                                                                    \
         const int8 small = aside ? (int8)(0) : column_small(&runs);                                                          \
         if (lanes_int_least(small) != 0) column_lanes(&runs, triangles, small, &mark);                                       \
         for (int lane = 0; lane < LANES; ++lane) {                                                                           \
@@ -282,7 +342,7 @@ INLINE int8 column_small(const Runs* runs) {
             mark.triangle = triangles[lane];                                                                                 \
             column_triangle(&runs, lane, positions, indices, vertexCount, blocks[lane], &mark, tasks, taskCapacity, status); \
         }                                                                                                                    \
-    })                                                                                                                       \
+    }                                                                                                                        \
     COLUMN_CLOSE(mark)                                                                                                       \
     bits_flush(&bits, &queue);
 

@@ -111,14 +111,20 @@ INLINE int8 run_extent(const real8 v[3], uint size, real8 slack, int8* first, in
 
 INLINE real8 run_most(const real8 v[3]) { return lanes_max3(fabs(v[0]), fabs(v[1]), fabs(v[2])); }
 
-// Sets up eight triangles of the mesh, of which only the live ones (-1) count.
-INLINE void run_setup(bool thin, const vitrail_GridDesc* grid, global const float* positions, global const uint* indices, uint vertexCount,
-                      const uint triangles[LANES], int8 live, Runs* runs) {
-    real8 x[3], y[3], z[3];
+// Corners and normals of eight triangles, in cells from the low cell of their boxes; margin: 8 delta.
+typedef struct {
+    real8 x[3], y[3], z[3], nx, ny, nz, margin;
+} RunCorners;
+
+// Boxes and states of eight triangles of the mesh, of which only the live ones (-1) count.
+INLINE void run_boxes(const vitrail_GridDesc* grid, global const float* positions, global const uint* indices, uint vertexCount,
+                      const uint triangles[LANES], int8 live, RunCorners* corners, Runs* runs) {
+    real8 *x = corners->x, *y = corners->y, *z = corners->z;
     const int8 good = triangle_eight(grid, positions, indices, vertexCount, triangles, x, y, z);
     const real size = REAL(max(grid->size.x, max(grid->size.y, grid->size.z)));
     const real8 delta = lanes_max(lanes_max3(run_most(x), run_most(y), run_most(z)), LANES_OF(size)) * LANES_OF(REAL_EPSILON);
-    const real8 margin = LANES_OF(8) * delta, slack = RUN_BOX_SLACK * delta;
+    const real8 slack = RUN_BOX_SLACK * delta;
+    corners->margin = LANES_OF(8) * delta;
     const int8 inside = run_extent(x, grid->size.x, slack, &runs->first[0], &runs->last[0]) &
                         run_extent(y, grid->size.y, slack, &runs->first[1], &runs->last[1]) &
                         run_extent(z, grid->size.z, slack, &runs->first[2], &runs->last[2]);
@@ -131,10 +137,19 @@ INLINE void run_setup(bool thin, const vitrail_GridDesc* grid, global const floa
         z[k] -= oz;
     }
     const real8 ux = x[1] - x[0], uy = y[1] - y[0], uz = z[1] - z[0], vx = x[2] - x[0], vy = y[2] - y[0], vz = z[2] - z[0];
-    const real8 nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
-    const int8 flat = LANES_TRUE(nx == LANES_OF(0)) & LANES_TRUE(ny == LANES_OF(0)) & LANES_TRUE(nz == LANES_OF(0));
+    corners->nx = uy * vz - uz * vy;
+    corners->ny = uz * vx - ux * vz;
+    corners->nz = ux * vy - uy * vx;
+    const int8 flat =
+        LANES_TRUE(corners->nx == LANES_OF(0)) & LANES_TRUE(corners->ny == LANES_OF(0)) & LANES_TRUE(corners->nz == LANES_OF(0));
     const int8 found = (inside & (RUN_INSIDE | (flat & RUN_DEGENERATE))) | (~inside & RUN_OUTSIDE);
     runs->state = live & ((good & found) | (~good & RUN_SKIPPED));
+}
+
+// What bounds their runs.
+INLINE void run_setup(bool thin, RunCorners* corners, Runs* runs) {
+    real8 *x = corners->x, *y = corners->y, *z = corners->z;
+    const real8 nx = corners->nx, ny = corners->ny, nz = corners->nz, margin = corners->margin;
     const real8 inverse = fabs(nz) > LANES_OF(REAL_PARALLEL) * (fabs(nx) + fabs(ny)) ? LANES_OF(-1) / nz : LANES_OF(0);
     runs->planeX = nx * inverse;
     runs->planeY = ny * inverse;

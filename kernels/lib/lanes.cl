@@ -36,6 +36,12 @@ INLINE int lanes_int_least(int8 a) {
     return min(two.x, two.y);
 }
 
+INLINE int lanes_int_sum(int8 a) {
+    const int4 four = a.lo + a.hi;
+    const int2 two = four.lo + four.hi;
+    return two.x + two.y;
+}
+
 // Lane `lane` of a vector in private memory.
 INLINE real lanes_at(const real8* v, int lane) { return ((const real*)v)[lane]; }
 INLINE int lanes_int_at(const int8* v, int lane) { return ((const int*)v)[lane]; }

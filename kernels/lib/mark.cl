@@ -44,22 +44,31 @@
         if (triangle != TASKS_NONE) statement;                                                                          \
     }
 
-// The same eight at a time: statement for up to eight `triangles` and their `blocks`, those that are `live` (-1).
-#define MARK_EIGHTS(triangles, blocks, live, statement)                                                                 \
+// The same eight at a time. Places of this work-item: [markFrom, markEnd), from one eight to the next markStep.
+#define MARK_RANGE                                                                                                      \
     const size_t markFrom = (groups ? LANES : (size_t)perItem) * get_global_id(0);                                      \
     const size_t markEnd = groups ? (size_t)tasks_count(status, taskCapacity) : min(markFrom + perItem, (size_t)count); \
-    for (size_t i = markFrom; i < markEnd; i += groups ? groups * (size_t)LANES : LANES) {                              \
-        uint triangles[LANES];                                                                                          \
-        int blocks[LANES];                                                                                              \
-        int8 live = LANES_IOTA_INT < (int)min(markEnd - i, (size_t)LANES);                                              \
-        if (groups)                                                                                                     \
-            live &= tasks_load(tasks + i, markEnd - i, triangles, blocks);                                              \
-        else                                                                                                            \
-            for (int markLane = 0; markLane < LANES; ++markLane) {                                                      \
-                triangles[markLane] = first + (uint)min(i + (size_t)markLane, markEnd - 1);                             \
-                blocks[markLane] = -1;                                                                                  \
-            }                                                                                                           \
-        statement;                                                                                                      \
+    const size_t markStep = groups ? groups * (size_t)LANES : LANES;
+
+// Up to eight `triangles` from place i on and their `blocks`; live: -1 for those that there are.
+#define MARK_TAKE(i, triangles, blocks, live)                                           \
+    live = LANES_IOTA_INT < (int)min(markEnd - i, (size_t)LANES);                       \
+    if (groups)                                                                         \
+        live &= tasks_load(tasks + i, markEnd - i, triangles, blocks);                  \
+    else                                                                                \
+        for (int markLane = 0; markLane < LANES; ++markLane) {                          \
+            triangles[markLane] = first + (uint)min(i + (size_t)markLane, markEnd - 1); \
+            blocks[markLane] = -1;                                                      \
+        }
+
+#define MARK_EIGHTS(triangles, blocks, live, statement)     \
+    MARK_RANGE                                              \
+    for (size_t i = markFrom; i < markEnd; i += markStep) { \
+        uint triangles[LANES];                              \
+        int blocks[LANES];                                  \
+        int8 live;                                          \
+        MARK_TAKE(i, triangles, blocks, live)               \
+        statement;                                          \
     }
 
 #endif

@@ -70,13 +70,21 @@ INLINE int8 triangle_eight(const vitrail_GridDesc* grid, global const float* pos
                            const uint triangles[LANES], real8 x[3], real8 y[3], real8 z[3]) {
     float gathered[9][LANES];
     uint corners[3][LANES];
+    size_t there[LANES][3];  // first, so that many loads are under way at a time
+#pragma unroll
     for (int lane = 0; lane < LANES; ++lane)
 #pragma unroll
         for (int k = 0; k < 3; ++k) {
-            const uint vertex = indices[3 * (size_t)triangles[lane] + k], there = vertex < vertexCount ? vertex : 0u;
+            const uint vertex = indices[3 * (size_t)triangles[lane] + k];
             corners[k][lane] = vertex;
-            for (int axis = 0; axis < 3; ++axis) gathered[3 * k + axis][lane] = positions[3 * (size_t)there + axis];
+            there[lane][k] = 3 * (size_t)(vertex < vertexCount ? vertex : 0u);
         }
+#pragma unroll
+    for (int lane = 0; lane < LANES; ++lane)
+#pragma unroll
+        for (int k = 0; k < 3; ++k)
+#pragma unroll
+            for (int axis = 0; axis < 3; ++axis) gathered[3 * k + axis][lane] = positions[there[lane][k] + axis];
     int8 good = (int8)(-1);
 #pragma unroll
     for (int k = 0; k < 3; ++k) {

@@ -192,7 +192,7 @@ kernel void surface_gather(const vitrail_GridDesc grid, global const float* posi
             if (table || !surface_coherent(&sums[0])) {
                 const uint which[LANES] = {k, k, k, k, k, k, k, k};
                 const bool there = !table && ready - (begin - (begin - from) % LANES) <= SURFACE_KEPT * LANES;
-                SurfaceOf of = {&mesh, there ? from : begin, begin, end, there ? kept : 0, &own};
+                SurfaceOf of = {&mesh, there ? from : begin, begin, end, there ? kept : 0, &own, {(real8)(REAL(0))}};
                 surface_corners(&grid, &cells, which, low, of.corner);
                 most = surface_planes(&of, sums);
             }
