@@ -5,11 +5,12 @@
 // bound, and are set by whole words, eight columns at a time. A box of one layer needs one projection and no plane. How: vertices
 // to voxel coordinates; triangles into slabs of y (rows of tiles) by each thread for itself; slabs to threads, which clear and
 // fill them without atomics. Eight triangles are set up at a time, one a lane (vectors of GCC and clang), and those over at most
-// four columns by four are filled that way too, a column of each at a time; a box of one cell along two axes is filled whole, where there are
-// five of them among eight, and the other triangles are set up with others of their kind. Cost: for triangles as small as a cell about 45 ns each
-// on one thread, with 13 cells each about twice that; then the clear. A triangle is set up again in each slab it reaches. Limits:
-// exact but for cells whose separation is within the rounding of doubles. A bound is taken over all three vertices, so slivers,
-// segments and points lose no cell, however their slopes are rounded; a sliver gains none further off than its width.
+// four columns by four are filled that way too, a column of each at a time; a box of one cell along two axes is filled whole,
+// where there are five of them among eight, and the other triangles are set up with others of their kind. Cost: for triangles as
+// small as a cell about 45 ns each on one thread, with 13 cells each about twice that; then the clear. A triangle is set up again
+// in each slab it reaches. Limits: exact but for cells whose separation is within the rounding of doubles, of which another number
+// of threads may decide some differently. A bound is taken over all three vertices, so slivers, segments and points lose no cell,
+// however their slopes are rounded; a sliver gains none further off than its width.
 #include "edge_runs.h"
 
 #include <algorithm>

@@ -12,10 +12,14 @@ namespace {
 
 constexpr std::uint64_t kRecordsMost = 1u << 28;  // three words each, and counters of them, fit 32 bits
 
-/// Records of the bits that triangles set, if their number is about what it is for meshes of triangles of a voxel or two or of few.
-std::uint32_t recordsFor(const DeviceMesh& mesh, const Grid& grid) {
-    const std::uint64_t columns = static_cast<std::uint64_t>(grid.size().x) * grid.size().y;
-    return static_cast<std::uint32_t>(std::min<std::uint64_t>(4ull * mesh.triangleCount() + 8 * columns + 65536, kRecordsMost));
+/// Room for records: enough where triangles are a voxel or two large, or few. 0: words cannot be told apart by 32 bits.
+std::uint32_t recordsFor(const Queue& queue, const DeviceMesh& mesh, const Grid& grid, std::uint64_t words) {
+    if (words > 0xffffffffull) return 0;
+    const DeviceInfo info = queue.deviceInfo();
+    const std::uint64_t columns = std::min<std::uint64_t>(8ull * grid.size().x * grid.size().y, 2 * words);
+    const std::uint64_t each = info.cpu ? 4 : 8;  // work-items of a GPU are short, and places come 64 at a time
+    const std::uint64_t most = std::min({kRecordsMost, info.maxBufferBytes / 12, queue.memoryLimit() / 48});
+    return static_cast<std::uint32_t>(std::min(each * mesh.triangleCount() + columns + 65536, most));
 }
 
 }  // namespace
@@ -27,21 +31,21 @@ VoxelLists voxelizeLists(Queue& queue, const DeviceMesh& mesh, const Grid& grid)
     const detail::Program program{"voxelize/lists", detail::realOptions(queue)};
     const char* method = Conservative::name.data();
     Buffer<std::uint32_t> records, places = workspace.take<std::uint32_t>(2, "count of records");
-    const std::uint32_t first[] = {0, recordsFor(mesh, grid)};  // places handed out, places there
-    std::uint32_t recorded = 0;
+    std::uint32_t handedOut[] = {0, 0};  // places, of how many
     const auto mark = [&](detail::Pass& pass, const detail::MarkChannels* channels) {
         if (channels == nullptr) {
-            if (pass.out.bits) records = workspace.take<std::uint32_t>(3ull * first[1], "records of triangles");
-            pass.call.upload(places, first, 2);
+            if (pass.out.bits) handedOut[1] = recordsFor(queue, mesh, grid, pass.out.bits.size());
+            if (handedOut[1] != 0) records = workspace.take<std::uint32_t>(3ull * handedOut[1], "records of triangles");
+            pass.call.upload(places, handedOut, 2);
             detail::Pass marking{pass.call, pass.mesh, program, pass.out, pass.tasks};
             const detail::MarkChannels to{.list = &records, .cursor = &places, .records = true};
             return detail::launchMark(marking, "lists", &to);
         }
-        recorded = places.read(queue)[0];
-        if (recorded > first[1]) return detail::launchMark(pass, method, channels);
+        handedOut[0] = records ? places.read(queue)[0] : 1;
+        if (handedOut[0] > handedOut[1]) return detail::launchMark(pass, method, channels);
         if (!mesh.materials()) pass.call.fill(pass.out.materials, 0);
-        pass.call.launchRange(program, "lists_count", recorded, records, pass.out.bits, pass.out.rank, pass.out.counts, mesh.materials(),
-                              pass.out.materials);
+        pass.call.launchRange(program, "lists_count", handedOut[0], records, pass.out.bits, pass.out.rank, pass.out.counts,
+                              mesh.materials(), pass.out.materials);
     };
     VoxelLists out{detail::runVoxelizer(queue, mesh, grid, Channel::count | Channel::material, method, "", mark), {}, {}};
     const Buffer<std::uint32_t>& counts = out.voxels.countBuffer();
@@ -54,8 +58,8 @@ VoxelLists voxelizeLists(Queue& queue, const DeviceMesh& mesh, const Grid& grid)
             ErrorCode::unsupported,
             {"a grid of " + grid.text() + " has " + std::to_string(total) + " fragments; lists hold 32 bits", "", "", "a coarser grid"});
     out.triangles = workspace.take<std::uint32_t>(total, "triangle lists");
-    if (recorded <= first[1]) {  // each cursor ends where its list does
-        call.launchRange(program, "lists_fill", recorded, records, out.ends, out.triangles);
+    if (handedOut[0] <= handedOut[1]) {  // each cursor ends where its list does
+        call.launchRange(program, "lists_fill", handedOut[0], records, out.ends, out.triangles);
         return out;
     }
     Buffer<detail::Task> tasks = workspace.take<detail::Task>(detail::kTaskCapacity, "task list");

@@ -68,7 +68,7 @@ void forTriangles(Pass& pass, const char* step, bool second, const std::function
 /// Whether fragments are added; else bits are set.
 inline bool adds(const MarkChannels* channels) { return channels != nullptr && !channels->records; }
 
-/// Calls run(arguments...) with MARK_BUFFERS of kernels/lib/mark.cl.
+/// Calls run(arguments...) with MARK_BUFFERS of kernels/lib/mark.cl. channels: null where bits are set and no more.
 template <class Run>
 void withMarkBuffers(Pass& pass, const MarkChannels* channels, Run&& run) {
     const MarkChannels none{};

@@ -1,4 +1,4 @@
-// lib/column_mark.cl: marks the runs of lib/column_run.cl; the body of column_mark and thin_mark.
+// lib/column_mark.cl: marks the runs of lib/column_run.cl; the body of conservative_mark, thin_mark and lists_mark.
 #ifndef VITRAIL_LIB_COLUMN_MARK
 #define VITRAIL_LIB_COLUMN_MARK
 #include "lib/column_run.cl"
@@ -155,7 +155,6 @@ INLINE void column_blocks(const Runs* runs, int lane, int xLeast, int xMost, int
 // Counts the fragments of a column of each of eight triangles: neighbours in a word are voxels with numbers in turn.
 INLINE void column_count_lanes(Mark* mark, const uint triangles[LANES], uint8 tile, uint8 inTile, uint8 mask) {
     const Channels* channels = mark->channels;
-#pragma unroll
     for (int lane = 0; lane < LANES; ++lane) {
         const uint bits = ((const uint*)&mask)[lane];
         if (bits == 0u) continue;
@@ -249,7 +248,8 @@ INLINE int8 column_small(const Runs* runs) {
            (runs->last[2] - runs->first[2] < 31) & (runs->state == RUN_INSIDE);
 }
 
-// Which of them (-1) have a box of one cell along two axes, in at most two columns, that the grid has not clipped: they meet all of its cells.
+// Which of them (-1) have a box of one cell along two axes, in at most two columns, that the grid has not clipped: they meet all of its cells (in
+// single precision, or come as near as their bounds reach, so that those would mark the same).
 INLINE int8 column_boxes(const vitrail_GridDesc* grid, const Runs* runs) {
     const int8 x = runs->last[0] - runs->first[0], y = runs->last[1] - runs->first[1], z = runs->last[2] - runs->first[2];
     const int8 whole = (min(min(runs->first[0], runs->first[1]), runs->first[2]) > 0) & (runs->last[0] < (int)grid->size.x - 1) &
@@ -257,20 +257,20 @@ INLINE int8 column_boxes(const vitrail_GridDesc* grid, const Runs* runs) {
     return whole & (runs->state == RUN_INSIDE) & ((((x | y) == 0) & (z < 31)) | ((z == 0) & (x + y == 1)));
 }
 
-// Marks the boxes of those in `which`: the first column's part, and that of the last where it is another.
+// Marks the boxes of those in `which`: what begins in the first column's first word, then what goes on in its next one or in the other column.
 INLINE void column_mark_boxes(const Runs* runs, const uint triangles[LANES], int8 which, Mark* mark) {
-    const uint8 z = as_uint8(runs->first[2]), height = as_uint8(runs->last[2]) - z + 1u, shift = z & 31u, ones = (uint8)(0xffffffffu);
-    const uint8 mask = ~(ones << height) & as_uint8(which), over = as_uint8((shift + height > 32u) & which);
-    const bool across = lanes_int_least(as_int8(over)) != 0;
-    const int8 other = which & ((runs->first[0] != runs->last[0]) | (runs->first[1] != runs->last[1]));
-    if (!mark->channels) bits_room(&mark->bits, mark->queue, 3u * LANES);
-    const uint8 x0 = as_uint8(runs->first[0]), y0 = as_uint8(runs->first[1]), x1 = as_uint8(runs->last[0]), y1 = as_uint8(runs->last[1]);
-    const uint8 tile = ((y0 >> 3) * mark->grid->tilesX + (x0 >> 3)) * mark->grid->size.w + (z >> 5), inTile = (y0 & 7u) * 8u + (x0 & 7u);
-    column_mark_lanes(mark, triangles, tile, inTile, mask << shift);
-    if (across) column_mark_lanes(mark, triangles, tile - over, inTile, (mask >> (32u - shift)) & over);
-    if (lanes_int_least(other) != 0)
-        column_mark_lanes(mark, triangles, ((y1 >> 3) * mark->grid->tilesX + (x1 >> 3)) * mark->grid->size.w + (z >> 5),
-                          (y1 & 7u) * 8u + (x1 & 7u), (mask << shift) & as_uint8(other));
+    const uint8 z = as_uint8(runs->first[2]), height = as_uint8(runs->last[2]) - z + 1u, shift = z & 31u;
+    const uint8 mask = ~((uint8)(0xffffffffu) << height) & as_uint8(which);
+    const int8 other = (runs->first[0] != runs->last[0]) | (runs->first[1] != runs->last[1]), over = (shift + height > 32u) & ~other;
+    const int steps = lanes_int_least(which & (other | over)) != 0 ? 2 : 1;
+    if (!mark->channels) bits_room(&mark->bits, mark->queue, 2u * LANES);
+    for (int step = 0; step < steps; ++step) {
+        const uint8 x = as_uint8(step == 0 ? runs->first[0] : runs->last[0]), y = as_uint8(step == 0 ? runs->first[1] : runs->last[1]);
+        const uint8 tile = ((y >> 3) * mark->grid->tilesX + (x >> 3)) * mark->grid->size.w + (z >> 5);
+        const uint8 next = (mask >> (32u - shift)) & as_uint8(over), part = mask << shift;
+        column_mark_lanes(mark, triangles, step == 0 ? tile : tile - as_uint8(over), (y & 7u) * 8u + (x & 7u),
+                          step == 0 ? part : (part & as_uint8(other)) | next);
+    }
 }
 
 #define COLUMN_BOXES 5  // of eight triangles, from which on it pays to do the others with others of their kind

@@ -19,12 +19,14 @@ INLINE void records_close(Records* records) {
     for (; records->next < records->end; ++records->next) vstore3((uint3)(0u), records->next, records->list);
 }
 
-// Makes room for eight; where there is none, nothing is noted any more, and places handed out tell.
+// Makes room for eight; where there is none, nothing is noted any more, and places handed out tell. Asked first, so that their count does not go on
+// to wrap around.
 INLINE bool records_room(Records* records) {
     if (records->end - records->next >= LANES) return true;
     records_close(records);
-    const uint first = atomic_add(records->cursor, RECORDS_PLACES);
-    if (first > records->cursor[1] - RECORDS_PLACES) {
+    const uint most = records->cursor[1];
+    const uint first = atomic_or(records->cursor, 0u) > most ? most : atomic_add(records->cursor, RECORDS_PLACES);
+    if (first + RECORDS_PLACES > most) {
         records->list = 0;
         return false;
     }

@@ -1,5 +1,5 @@
 // voxelize/surface.cl: the surface record that the triangles of a conservative voxel add up to (vitrail/layout/surface_voxel.h), from the
-// lists that conservative_mark left. Gathering needs no atomics; sums in fixed point make the order of a list not matter.
+// lists of voxelize/lists.cl. Gathering needs no atomics; sums in fixed point make the order of a list not matter.
 #include "lib/range.cl"
 #include "lib/surface_records.cl"
 #pragma OPENCL FP_CONTRACT OFF
@@ -31,7 +31,7 @@ static inline bool surface_coherent(const SurfaceSum* sum) {
 }
 
 // The triangles of a voxel, list[begin] to list[end - 1], and what they add. Eight `i` of `kept`, modulo SURFACE_KEPT, is that of the
-// triangles from list[base + 8 i] on, if all of the voxel are there; else each is made anew, in `own`.
+// triangles from list[base + 8 i] on; where not all of the voxel's are there any more `kept` is null, and each is made anew in `own`.
 typedef struct {
     const SurfaceMesh* mesh;
     size_t base, begin, end;

@@ -73,6 +73,19 @@ TEST(Lists, HoldEachTriangleOfAVoxelOnce) {
         }
 }
 
+// Triangles with a box of one cell along two axes are marked by it where there are enough of them, else by their bounds: the same cells, also
+// where corners lie on cells' faces.
+TEST(Lists, HoldTheSameWhicheverWayATriangleIsMarked) {
+    const Grid grid = test::unitGrid(Uint3(24, 20, 40));
+    for (const Precision precision : {Precision::best, Precision::single})
+        for (const float step : {0.0f, 0.25f, 0.5f})
+            for (const float reach : {0.5f, 1.0f, 1.5f}) {
+                const test::WithPrecision set(queue(), precision);
+                const Mesh mesh = materialsOf(test::soup(7, 400, grid.size(), reach, step));
+                EXPECT_LT(expectLists(mesh, grid), room(mesh, grid)) << step << " " << reach;
+            }
+}
+
 TEST(Lists, HoldMoreThanThereIsRoomToNote) {
     const Grid grid = test::unitGrid(Uint3(40, 40, 64));
     for (const Storage storage : {Storage::dense, Storage::bricks}) {

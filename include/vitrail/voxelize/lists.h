@@ -12,9 +12,9 @@ struct VoxelLists {
 };
 
 /// Waits three times for sizes (occupied voxels, records of their triangles, fragments). Needs a box grid. Memory beside Conservative's with
-/// channels: 4 bytes an occupied voxel and 4 a fragment, and while it works records of 12 bytes for four a triangle and eight a column along
-/// z; where there are more of them than that, the triangles are gone over twice more. Throws as voxelize(..., Conservative); Error (unsupported)
-/// past 2^32 - 1 fragments.
+/// channels: 4 bytes an occupied voxel and 4 a fragment, and while it works 12 bytes for each of 65536 records, of four a triangle (eight on a GPU)
+/// and of eight a column along z or two a word of bits, at most a quarter of the memory limit; where there are more records than that, the triangles
+/// are gone over twice more. Throws as voxelize(..., Conservative); Error (unsupported) past 2^32 - 1 fragments.
 VoxelLists voxelizeLists(Queue& queue, const DeviceMesh& mesh, const Grid& grid);
 
 }  // namespace v0
