@@ -4,6 +4,12 @@
 #include "lib/samples.cl"
 #pragma OPENCL FP_CONTRACT OFF
 
+INLINE void solid_slicemap_cross(const vitrail_GridDesc* grid, global uint* map, uint x, uint y, real z) {
+    if (z < REAL(0) || z > REAL(grid->size.z)) return;
+    const uint slice = samples_slice(grid, z);
+    atomic_or(map + bits_word(grid, 0, x, y, slice), 1u << (slice & 31u));
+}
+
 static inline void solid_slicemap_triangle(const vitrail_GridDesc* grid, global uint* back, bool mirrored, global const float* positions,
                                            global const uint* indices, uint vertexCount, uint triangle, int block, global uint* front,
                                            global uint2* tasks, uint taskCapacity, global uint* status) {
@@ -22,10 +28,8 @@ static inline void solid_slicemap_triangle(const vitrail_GridDesc* grid, global 
         for (int x = from; x < to; ++x) {
             real z;
             if (!samples_depth(grid, &s, &q, x, &z)) continue;
-            if (z < REAL(0) || z > REAL(grid->size.z)) continue;
             if (s.behind) sense = samples_sense(grid, &s, &q, x);
-            const uint slice = samples_slice(grid, z);
-            atomic_or(((sense < 0) != mirrored ? front : back) + bits_word(grid, 0, (uint)x, (uint)y, slice), 1u << (slice & 31u));
+            solid_slicemap_cross(grid, (sense < 0) != mirrored ? front : back, (uint)x, (uint)y, z);
         }
     }
 }
@@ -34,7 +38,9 @@ kernel void solid_slicemap_mark(const vitrail_GridDesc grid, global uint* back, 
     MARK_WITHOUT_CHANNELS;
     (void)bricks;
     MARK_EIGHTS(triangles, blocks, live, {
-        live &= samples_eight(&grid, positions, indices, vertexCount, triangles, false);
+        SamplesEight eight;
+        live &= samples_eight(&grid, positions, indices, vertexCount, triangles, false, live, &eight);
+        SAMPLES_EACH_FEW(eight, solid_slicemap_cross(&grid, (sense < 0) != (mirrored != 0u) ? words : back, x, y, z))
         for (int lane = 0; lane < LANES; ++lane)
             if (lanes_int_at(&live, lane))
                 solid_slicemap_triangle(&grid, back, mirrored != 0u, positions, indices, vertexCount, triangles[lane], blocks[lane], words,

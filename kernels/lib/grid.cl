@@ -69,6 +69,10 @@ INLINE Point grid_to_world(const vitrail_GridDesc* grid, Point v) {
     return p;
 }
 
+INLINE real8 grid_axis8(real8 x, real8 y, real8 z, const vitrail_float4 axis) {
+    return x * REAL(axis.x) + y * REAL(axis.y) + z * REAL(axis.z);
+}
+
 // The same as grid_to_voxel for eight points.
 INLINE void grid_to_voxel8(const vitrail_GridDesc* grid, float8 px, float8 py, float8 pz, real8* x, real8* y, real8* z) {
     if (grid->kind == VITRAIL_GRID_BOX) {
@@ -77,12 +81,19 @@ INLINE void grid_to_voxel8(const vitrail_GridDesc* grid, float8 px, float8 py, f
         *z = (LANES_REAL(pz) - REAL(grid->origin.z)) / REAL(grid->extent.z);
         return;
     }
-    for (int lane = 0; lane < LANES; ++lane) {
-        const Point v = grid_to_voxel(grid, ((float*)&px)[lane], ((float*)&py)[lane], ((float*)&pz)[lane]);
-        ((real*)x)[lane] = v.x;
-        ((real*)y)[lane] = v.y;
-        ((real*)z)[lane] = v.z;
-    }
+    const real8 dx = LANES_REAL(px) - REAL(grid->origin.x), dy = LANES_REAL(py) - REAL(grid->origin.y),
+                dz = LANES_REAL(pz) - REAL(grid->origin.z);
+    const real8 right = grid_axis8(dx, dy, dz, grid->axisX), up = grid_axis8(dx, dy, dz, grid->axisY),
+                depth = grid_axis8(dx, dy, dz, grid->axisZ);
+    const bool perspective = grid->kind == VITRAIL_GRID_PERSPECTIVE;
+    const real8 halfX = perspective ? depth * REAL(grid->extent.x) : LANES_OF(grid->extent.x),
+                halfY = perspective ? depth * REAL(grid->extent.y) : LANES_OF(grid->extent.y);
+    *x = (right / halfX * REAL(0.5f) + REAL(0.5f)) * REAL(grid->size.x);
+    *y = (up / halfY * REAL(0.5f) + REAL(0.5f)) * REAL(grid->size.y);
+    *z = (depth - REAL(grid->extent.z)) / (REAL(grid->extent.w) - REAL(grid->extent.z)) * REAL(grid->size.z);
+    if (!perspective) return;
+    *x = depth <= REAL(0) ? LANES_OF(0) : *x;
+    *y = depth <= REAL(0) ? LANES_OF(0) : *y;
 }
 
 #endif

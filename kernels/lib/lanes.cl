@@ -42,6 +42,15 @@ INLINE int lanes_int_sum(int8 a) {
     return two.x + two.y;
 }
 
+// Flags as bits: bit i is lane i's. And the lowest of bits that are set.
+INLINE uint lanes_bits(int8 flags) {
+    const int8 own = flags & (int8)(1, 2, 4, 8, 16, 32, 64, 128);
+    const int4 four = own.lo | own.hi;
+    const int2 two = four.lo | four.hi;
+    return (uint)(two.x | two.y);
+}
+INLINE int lanes_lowest(uint bits) { return 31 - (int)clz(bits & (0u - bits)); }
+
 // Lane `lane` of a vector in private memory.
 INLINE real lanes_at(const real8* v, int lane) { return ((const real*)v)[lane]; }
 INLINE int lanes_int_at(const int8* v, int lane) { return ((const int*)v)[lane]; }

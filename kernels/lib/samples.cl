@@ -345,25 +345,85 @@ INLINE void samples_rows(const vitrail_GridDesc* grid, const Samples* s, int xLe
     }
 }
 
-// Which of eight triangles have to be looked at one by one: not those, of a grid without perspective, that are usable and have area but
-// cover no column's centre.
+#define SAMPLES_FEW 4  // columns along x and y of a triangle that is done beside seven others, a lane each
+
+// Eight triangles of a grid without perspective.
+typedef struct {
+    real8 x[3], y[3], z[3], lowest, highest;
+    int8 xLeast, yLeast, columns, rows;  // that may be covered by those of few; 0 of the others
+    int most[2];                         // columns and rows among them
+} SamplesEight;
+
+// Returns which of eight triangles have to be looked at one by one: not those, of a grid without perspective, that are usable and have area
+// but cover no column's centre, nor of those in `aside` (-1) the ones of few columns, which are left to SAMPLES_EACH_FEW.
 INLINE int8 samples_eight(const vitrail_GridDesc* grid, global const float* positions, global const uint* indices, uint vertexCount,
-                          const uint triangles[LANES], bool everyDepth) {
+                          const uint triangles[LANES], bool everyDepth, int8 aside, SamplesEight* s) {
+    s->most[0] = s->most[1] = 0;
     if (grid->kind == VITRAIL_GRID_PERSPECTIVE) return (int8)(-1);
-    real8 x[3], y[3], z[3];
-    const int8 good = triangle_eight(grid, positions, indices, vertexCount, triangles, x, y, z);
-    int8 covers = (int8)(-1), inside = (int8)(-1);
+    const int8 good = triangle_eight(grid, positions, indices, vertexCount, triangles, s->x, s->y, s->z);
+    int8 inside = (int8)(-1), first[2], count[2];
     for (int axis = 0; axis < 3; ++axis) {
-        const real8* v = axis == 0 ? x : axis == 1 ? y : z;
-        const real8 size = LANES_OF(axis == 0 ? grid->size.x : axis == 1 ? grid->size.y : grid->size.z), half_ = LANES_OF(0.5f);
-        const real8 least = lanes_min3(v[0], v[1], v[2]), most = lanes_max3(v[0], v[1], v[2]);
-        if (axis != 2 || !everyDepth) inside &= LANES_TRUE(most >= LANES_OF(0)) & LANES_TRUE(least <= size);
-        if (axis == 2) continue;
-        const real8 low = lanes_min(lanes_max(least - half_, LANES_OF(-2)), size),
-                    high = lanes_min(lanes_max(most - half_, LANES_OF(-2)), size);
-        covers &= lanes_ceil_int(low) < lanes_ceil_int(high);
+        const real8* v = axis == 0 ? s->x : axis == 1 ? s->y : s->z;
+        const uint size = axis == 0 ? grid->size.x : axis == 1 ? grid->size.y : grid->size.z;
+        const real8 least = lanes_min3(v[0], v[1], v[2]), most = lanes_max3(v[0], v[1], v[2]), half_ = LANES_OF(0.5f);
+        if (axis != 2 || !everyDepth) inside &= LANES_TRUE(most >= LANES_OF(0)) & LANES_TRUE(least <= LANES_OF(size));
+        if (axis == 2) {
+            s->lowest = least;
+            s->highest = most;
+            continue;
+        }
+        const real8 low = lanes_min(lanes_max(least - half_, LANES_OF(-2)), LANES_OF(size)),
+                    high = lanes_min(lanes_max(most - half_, LANES_OF(-2)), LANES_OF(size));
+        first[axis] = max(lanes_ceil_int(low), (int8)(0));
+        count[axis] = lanes_ceil_int(high) - first[axis];
     }
-    return ~(good & inside & ~triangle_flat_eight(x, y, z) & ~covers);
+    const int8 usable = good & inside & ~triangle_flat_eight(s->x, s->y, s->z), covers = (count[0] > 0) & (count[1] > 0);
+    const int8 few = aside & usable & covers & (count[0] <= SAMPLES_FEW) & (count[1] <= SAMPLES_FEW);
+    s->xLeast = first[0];
+    s->yLeast = first[1];
+    s->columns = count[0] & few;
+    s->rows = count[1] & few;
+    s->most[0] = -lanes_int_least(-s->columns);
+    s->most[1] = -lanes_int_least(-s->rows);
+    return ~(usable & ~covers) & ~few;
 }
+
+// samples_edge_sense of eight, of products ra qb and rb qa.
+INLINE int8 samples_senses(real8 ab, real8 ba, int8 belowA, int8 belowB) {
+    return ((belowA & ~belowB & LANES_TRUE(ab > ba)) & 1) | (belowB & ~belowA & LANES_TRUE(ba > ab));
+}
+
+// The few's column (i, j) of each: which of them cover its centre, as bits, the slice coordinate there and their sense (samples_sense).
+INLINE uint samples_few(const SamplesEight* s, int i, int j, int8* x, int8* y, real8* depth, int8* sense) {
+    *x = s->xLeast + i;
+    *y = s->yLeast + j;
+    const real8 cx = LANES_REAL(*x) + LANES_OF(0.5f), cy = LANES_REAL(*y) + LANES_OF(0.5f);
+    const real8 ra = s->x[0] - cx, rb = s->x[1] - cx, rc = s->x[2] - cx, qa = s->y[0] - cy, qb = s->y[1] - cy, qc = s->y[2] - cy;
+    const int8 a = LANES_TRUE(qa <= LANES_OF(0)), b = LANES_TRUE(qb <= LANES_OF(0)), c = LANES_TRUE(qc <= LANES_OF(0));
+    const real8 ab = ra * qb, ba = rb * qa, bc = rb * qc, cb = rc * qb, ca = rc * qa, ac = ra * qc;
+    const int8 one = samples_senses(ab, ba, a, b), two = samples_senses(bc, cb, b, c), three = samples_senses(ca, ac, c, a);
+    *sense = one + two + three;
+    const real8 u = bc - cb, v = ca - ac, w = ab - ba;
+    real8 z = s->z[0] + (v * (s->z[1] - s->z[0]) + w * (s->z[2] - s->z[0])) / ((u + v) + w);
+    z = z >= s->lowest ? z : s->lowest;
+    *depth = z > s->highest ? s->highest : z;
+    return lanes_bits(((one ^ two ^ three) << 31 >> 31) & (s->columns > i) & (s->rows > j));
+}
+
+// For each of the few and every column whose centre it covers: statement, with its lane, x, y, z and sense.
+#define SAMPLES_EACH_FEW(eight, statement)                                                       \
+    for (int row = 0; row < (eight).most[1]; ++row)                                              \
+        for (int column = 0; column < (eight).most[0]; ++column) {                               \
+            int8 xs, ys, senses;                                                                 \
+            real8 zs;                                                                            \
+            uint covers = samples_few(&(eight), column, row, &xs, &ys, &zs, &senses);            \
+            for (; covers != 0u; covers &= covers - 1u) {                                        \
+                const int lane = lanes_lowest(covers), sense = lanes_int_at(&senses, lane);      \
+                const uint x = (uint)lanes_int_at(&xs, lane), y = (uint)lanes_int_at(&ys, lane); \
+                const real z = lanes_at(&zs, lane);                                              \
+                (void)lane, (void)sense;                                                         \
+                statement;                                                                       \
+            }                                                                                    \
+        }
 
 #endif

@@ -33,15 +33,6 @@ INLINE Vectors vectors_cross(const Vectors a, const Vectors b) {
 }
 INLINE real8 vectors_dot(const Vectors a, const Vectors b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-// Of eight flags: bit i is lane i's.
-INLINE uint gbuffer_mask(int8 flags) {
-    const int8 own = flags & (int8)(1, 2, 4, 8, 16, 32, 64, 128);
-    const int4 four = own.lo | own.hi;
-    const int2 two = four.lo | four.hi;
-    return (uint)(two.x | two.y);
-}
-INLINE int gbuffer_lowest(uint mask) { return 31 - (int)clz(mask & (0u - mask)); }
-
 // camera_window's, of eight pixels.
 INLINE real8 gbuffer_across(const vitrail_CameraDesc* camera, int8 x) {
     return LANES_REAL(((convert_float8(x) + 0.5f) / (float)camera->width * 2.0f - 1.0f) * camera->right.w);
@@ -71,9 +62,9 @@ INLINE uint gbuffer_hits(const Raster* raster, const Planes* p, int8 x, int8 y, 
     const real8 z = (flat ? p->d - p->nx * rx - p->ny * ry : p->d) / slope;
     *bits = as_uint8(convert_float8(z));
     // Not edge-on; right, up, forward are left-handed: n is turned around.
-    return gbuffer_mask(live &
-                        LANES_TRUE((((e0 >= zero) & (e1 >= zero) & (e2 >= zero)) | ((e0 <= zero) & (e1 <= zero) & (e2 <= zero))) &
-                                   (raster->faces == FACES_AWAY ? slope < zero : slope != zero) & (z > zero) & (z <= LANES_OF(1e30f))));
+    return lanes_bits(live &
+                      LANES_TRUE((((e0 >= zero) & (e1 >= zero) & (e2 >= zero)) | ((e0 <= zero) & (e1 <= zero) & (e2 <= zero))) &
+                                 (raster->faces == FACES_AWAY ? slope < zero : slope != zero) & (z > zero) & (z <= LANES_OF(1e30f))));
 }
 
 // Whether the triangle is the nearest so far. Depths and numbers only fall.
@@ -144,7 +135,7 @@ INLINE uint gbuffer_eight(const Raster* raster, const uint triangle[LANES], int 
     xLast = (xLast & boxed) | (((int)camera->width - 1) & ~boxed);
     yLast = (yLast & boxed) | (((int)camera->height - 1) & ~boxed);
     good &= (xFirst <= xLast) & (yFirst <= yLast);
-    const uint all = gbuffer_mask(good);
+    const uint all = lanes_bits(good);
     if (all == 0u) return 0u;
     // Edge planes: through the eye, or along the view direction.
     Planes p;
@@ -174,10 +165,10 @@ INLINE uint gbuffer_eight(const Raster* raster, const uint triangle[LANES], int 
                      ((xLast - xFirst + 1) * (yLast - yFirst + 1) <= GBUFFER_FEW);
     int8 x = xFirst, y = yFirst, within = few;
     uint8 bits;
-    while (gbuffer_mask(within) != 0u) {
+    while (lanes_bits(within) != 0u) {
         const uint8 pixel = as_uint8(y) * camera->width + as_uint8(x);
         for (uint hits = gbuffer_hits(raster, &p, x, y, within, &bits); hits != 0u; hits &= hits - 1u) {
-            const int lane = gbuffer_lowest(hits);
+            const int lane = lanes_lowest(hits);
             if (gbuffer_put(raster, ((const uint*)&pixel)[lane], ((const uint*)&bits)[lane], triangle[lane])) seen |= 1u << lane;
         }
         const int8 wrap = x >= xLast;
@@ -185,8 +176,8 @@ INLINE uint gbuffer_eight(const Raster* raster, const uint triangle[LANES], int 
         y -= wrap;
         within &= y <= yLast;
     }
-    for (uint many = all & ~gbuffer_mask(few); many != 0u; many &= many - 1u) {
-        const int lane = gbuffer_lowest(many), from = lanes_int_at(&xFirst, lane), to = lanes_int_at(&xLast, lane),
+    for (uint many = all & ~lanes_bits(few); many != 0u; many &= many - 1u) {
+        const int lane = lanes_lowest(many), from = lanes_int_at(&xFirst, lane), to = lanes_int_at(&xLast, lane),
                   end = lanes_int_at(&yLast, lane);
         Planes one;
         for (int i = 0; i < (int)(sizeof(Planes) / sizeof(real8)); ++i) ((real8*)&one)[i] = (real8)(lanes_at((const real8*)&p + i, lane));
@@ -194,7 +185,7 @@ INLINE uint gbuffer_eight(const Raster* raster, const uint triangle[LANES], int 
             for (int at = from; at <= to; at += LANES) {
                 const int8 columns = at + LANES_IOTA_INT;
                 for (uint hits = gbuffer_hits(raster, &one, columns, (int8)(row), columns <= to, &bits); hits != 0u; hits &= hits - 1u) {
-                    const int hit = gbuffer_lowest(hits);
+                    const int hit = lanes_lowest(hits);
                     if (gbuffer_put(raster, (size_t)row * camera->width + (uint)(at + hit), ((const uint*)&bits)[hit], triangle[lane]))
                         seen |= 1u << lane;
                 }

@@ -70,36 +70,33 @@ INLINE void points_by_table(const Scatter* s, const Point c[3], int n, const int
 
 // What eight triangles of a grid without perspective are.
 typedef struct {
-    int8 good, outside, flat;  // -1 or 0
-    int8 single;               // all its points, `times` of them, are in cell (x, y, z), or its only one is not in the grid (times 0)
+    int8 usable, flat;  // -1 or 0
+    int8 single;        // all its points, `times` of them, are in cell (x, y, z), or its only one is not in the grid (times 0)
     int8 x, y, z, times;
     int8 small;  // the table has its pattern: inside factor n, edge factors t
     int8 n, t[3];
     real8 corner[3][3];  // axis, vertex
 } Eight;
 
+// small, n and t only where a live one has more points than one.
 INLINE void points_eight(const vitrail_GridDesc* grid, real gamma, global const float* positions, global const uint* indices,
-                         uint vertexCount, const uint triangles[LANES], Eight* eight) {
+                         uint vertexCount, const uint triangles[LANES], int8 live, Eight* eight) {
     real8* x = eight->corner[0];
     real8* y = eight->corner[1];
     real8* z = eight->corner[2];
-    eight->good = triangle_eight(grid, positions, indices, vertexCount, triangles, x, y, z);
+    eight->usable = triangle_eight(grid, positions, indices, vertexCount, triangles, x, y, z);
     eight->flat = triangle_flat_eight(x, y, z);
-    eight->outside = (int8)(0);
-    int8 together = (int8)(-1), inside = (int8)(-1);
+    int8 inside = (int8)(-1);
     real8 factor[3] = {LANES_OF(0), LANES_OF(0), LANES_OF(0)};
     int8 cell[3];
+#pragma unroll
     for (int axis = 0; axis < 3; ++axis) {
         const real8* v = eight->corner[axis];
         const uint size = axis == 0 ? grid->size.x : axis == 1 ? grid->size.y : grid->size.z;
-        eight->outside |=
-            LANES_TRUE(lanes_max3(v[0], v[1], v[2]) < LANES_OF(0)) | LANES_TRUE(lanes_min3(v[0], v[1], v[2]) > LANES_OF(size));
-        int8 cells[3];
-        for (int k = 0; k < 3; ++k) {
-            factor[k] = lanes_max(factor[k], fabs(v[k] - v[k == 2 ? 0 : k + 1]));
-            cells[k] = points_cells(v[k], size);
-            together &= points_within(v[k], size) & (cells[k] == cells[0]);
-        }
+        eight->usable &=
+            ~(LANES_TRUE(lanes_max3(v[0], v[1], v[2]) < LANES_OF(0)) | LANES_TRUE(lanes_min3(v[0], v[1], v[2]) > LANES_OF(size)));
+#pragma unroll
+        for (int k = 0; k < 3; ++k) factor[k] = lanes_max(factor[k], fabs(v[k] - v[k == 2 ? 0 : k + 1]));
         // The centroid, for triangles of one point.
         const real third = REAL(1) / REAL(3);
         const real8 middle = (v[0] + third * (v[2] - v[0])) + third * (v[1] - v[0]);
@@ -108,6 +105,19 @@ INLINE void points_eight(const vitrail_GridDesc* grid, real gamma, global const 
     }
     for (int k = 0; k < 3; ++k) factor[k] *= gamma;
     const int8 one = LANES_TRUE(lanes_max3(factor[0], factor[1], factor[2]) <= LANES_OF(1));
+    eight->single = eight->small = one;
+    eight->times = inside & 1;
+    eight->x = cell[0];
+    eight->y = cell[1];
+    eight->z = cell[2];
+    if (lanes_int_least(~one & live) == 0) return;
+    int8 together = (int8)(-1);
+    for (int axis = 0; axis < 3; ++axis) {
+        const real8* v = eight->corner[axis];
+        const uint size = axis == 0 ? grid->size.x : axis == 1 ? grid->size.y : grid->size.z;
+        const int8 first = points_cells(v[0], size);
+        for (int k = 0; k < 3; ++k) together &= points_within(v[k], size) & (points_cells(v[k], size) == first);
+    }
     for (int k = 0; k < 3; ++k) factor[k] *= CLOSER;
     const real8 most = lanes_max3(factor[0], factor[1], factor[2]), room = LANES_OF(TABLE_FACTOR + 1);
     for (int k = 0; k < 3; ++k) eight->t[k] = max(lanes_ceil_int(lanes_min(factor[k], room)), (int8)(1));
@@ -116,11 +126,11 @@ INLINE void points_eight(const vitrail_GridDesc* grid, real gamma, global const 
     const int8 edges = eight->t[0] + eight->t[1] + eight->t[2], m = eight->n - 2;
     eight->small = LANES_TRUE(most <= LANES_OF(TABLE_FACTOR));
     eight->single = one | (together & eight->small);
-    eight->times = one ? inside & 1 : edges + 3 * m + 3 * m * m / 2;
+    eight->times = one ? eight->times : edges + 3 * m + 3 * m * m / 2;
     // What is together is so in the cell of its centroid too, whatever its rounding.
-    eight->x = one ? cell[0] : points_cells(x[0], grid->size.x);
-    eight->y = one ? cell[1] : points_cells(y[0], grid->size.y);
-    eight->z = one ? cell[2] : points_cells(z[0], grid->size.z);
+    eight->x = one ? eight->x : points_cells(x[0], grid->size.x);
+    eight->y = one ? eight->y : points_cells(y[0], grid->size.y);
+    eight->z = one ? eight->z : points_cells(z[0], grid->size.z);
 }
 
 kernel void points_mark(const vitrail_GridDesc grid, float safetyFactor, global const real* table, MARK_PARAMETERS) {
@@ -128,30 +138,34 @@ kernel void points_mark(const vitrail_GridDesc grid, float safetyFactor, global 
     const Bits bits = MARK_BITS;
     Scatter s;
     points_begin(&s, &grid, bits, rank ? &channels : 0);
-    const bool even = grid.kind != VITRAIL_GRID_PERSPECTIVE;
+    const bool even = grid.kind != VITRAIL_GRID_PERSPECTIVE && groups == 0u;
     MARK_EIGHTS(triangles, blocks, live, {
         Eight eight;
-        if (even && groups == 0u) points_eight(&grid, REAL(safetyFactor), positions, indices, vertexCount, triangles, &eight);
+        if (even) {
+            points_eight(&grid, REAL(safetyFactor), positions, indices, vertexCount, triangles, live, &eight);
+            if (!rank) {
+                const int8 done = live & eight.usable & eight.single;
+                points_mark_eight(&s, eight.x, eight.y, eight.z, done & (eight.times != 0), LANES);
+                const int flat = -lanes_int_sum(live & eight.usable & eight.small & eight.flat);
+                if (flat != 0) atomic_add(status + STATUS_DEGENERATE, (uint)flat);
+                live &= ~done;
+                if (lanes_int_least(live) == 0) continue;
+            }
+        }
         for (int lane = 0; lane < LANES; ++lane) {
             if (!lanes_int_at(&live, lane)) continue;
             points_attributes(&s, positions, indices, vertexCount, triangles[lane]);
-            if (!even || groups != 0u || !lanes_int_at(&eight.good, lane) || lanes_int_at(&eight.outside, lane) ||
-                (!lanes_int_at(&eight.small, lane))) {
+            if (!even || !lanes_int_at(&eight.usable, lane) || !lanes_int_at(&eight.small, lane)) {
                 points_triangle(&s, safetyFactor, positions, indices, vertexCount, triangles[lane], blocks[lane], blocks[lane] < 0 && !rank,
                                 tasks, taskCapacity, status);
                 continue;
             }
-            if (!rank && lanes_int_at(&eight.flat, lane)) atomic_inc(status + STATUS_DEGENERATE);
-            if (lanes_int_at(&eight.single, lane)) {
-                const uint times = (uint)lanes_int_at(&eight.times, lane);
+            if (lanes_int_at(&eight.single, lane)) {  // with channels
                 const uint x = (uint)lanes_int_at(&eight.x, lane);
                 const uint y = (uint)lanes_int_at(&eight.y, lane);
                 const uint z = (uint)lanes_int_at(&eight.z, lane);
-                if (times == 0u) continue;
-                if (!rank)
-                    bits_set_run(&s.bits, &grid, x, y, z, z);
-                else
-                    channels_add(&s.share, bits_word(&grid, bricks, x, y, z), x, y, z, times);
+                const uint times = (uint)lanes_int_at(&eight.times, lane);
+                if (times != 0u) channels_add(&s.share, bits_word(&grid, bricks, x, y, z), x, y, z, times);
                 continue;
             }
             Point c[3];

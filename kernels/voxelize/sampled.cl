@@ -42,8 +42,16 @@ static inline void sampled_triangle(const vitrail_GridDesc* grid, uint flags, gl
 kernel void sampled_mark(const vitrail_GridDesc grid, uint flags, global uint* nearest, global uint* farthest, MARK_PARAMETERS) {
     const Channels channels = MARK_CHANNELS;
     const Bits bits = MARK_BITS;
+    const int8 aside = (int8)(rank || flags != 0u ? 0 : -1);
     MARK_EIGHTS(triangles, blocks, live, {
-        live &= samples_eight(&grid, positions, indices, vertexCount, triangles, false);
+        SamplesEight eight;
+        live &= samples_eight(&grid, positions, indices, vertexCount, triangles, false, aside & live, &eight);
+        SAMPLES_EACH_FEW(
+            eight, if (z >= REAL(0) && z <= REAL(grid.size.z)) {
+                const uint slice = samples_slice(&grid, z);
+                bits_set(&bits, &grid, x, y, slice, 1u << (slice & 31u));
+            })
+        if (lanes_int_least(live) == 0) continue;
         for (int lane = 0; lane < LANES; ++lane)
             if (lanes_int_at(&live, lane))
                 sampled_triangle(&grid, flags, nearest, farthest, positions, indices, vertexCount, triangles[lane], blocks[lane], &bits,

@@ -6,6 +6,21 @@
 #pragma OPENCL FP_CONTRACT OFF
 
 // beyond: a bit a column, toggled by crossings after the last cell's centre; where only bricks are looked for, by those before it.
+INLINE void solid_toggle(const vitrail_GridDesc* grid, global uint* beyond, const Bits* bits, uint x, uint y, real z) {
+    if (z < REAL(grid->size.z) - REAL(0.5f)) {
+        const uint cell = z < REAL(0.5f) ? 0u : (uint)(z + REAL(0.5f));
+        global uint* words;
+        if (bits_open(bits, bits_tile(grid, x, y) + (cell >> 5), &words)) {
+            atomic_xor(words + bits_in_tile(x, y), 1u << (cell & 31u));
+            return;
+        }
+    } else if (!bits->words) {
+        return;
+    }
+    const size_t column = (size_t)y * grid->tilesX * 8u + x;
+    atomic_xor(beyond + column / 32u, 1u << (column & 31u));
+}
+
 static inline void solid_triangle(const vitrail_GridDesc* grid, global uint* beyond, global const float* positions,
                                   global const uint* indices, uint vertexCount, uint triangle, int block, const Bits* bits,
                                   global uint2* tasks, uint taskCapacity, global uint* status) {
@@ -16,26 +31,13 @@ static inline void solid_triangle(const vitrail_GridDesc* grid, global uint* bey
     if (state != SAMPLES_COVERS) return;
     int xLeast = s.xLeast, xMost = s.xMost, yLeast = s.yLeast, yMost = s.yMost;
     if (tasks_columns(&xLeast, &xMost, &yLeast, &yMost, block, tasks, taskCapacity, status, triangle)) return;
-    const real last = REAL(grid->size.z) - REAL(0.5f);
     for (int y = yLeast; y <= yMost; ++y) {
         Seen q;
         int from, to;
         if (!samples_row(grid, &s, xLeast, xMost, y, &q, &from, &to)) continue;
         for (int x = from; x < to; ++x) {
             real z;
-            if (!samples_depth(grid, &s, &q, x, &z)) continue;
-            if (z < last) {
-                const uint cell = z < REAL(0.5f) ? 0u : (uint)(z + REAL(0.5f));
-                global uint* words;
-                if (bits_open(bits, bits_tile(grid, (uint)x, (uint)y) + (cell >> 5), &words)) {
-                    atomic_xor(words + bits_in_tile((uint)x, (uint)y), 1u << (cell & 31u));
-                    continue;
-                }
-            } else if (!bits->words) {
-                continue;
-            }
-            const size_t column = (size_t)y * grid->tilesX * 8u + (uint)x;
-            atomic_xor(beyond + column / 32u, 1u << (column & 31u));
+            if (samples_depth(grid, &s, &q, x, &z)) solid_toggle(grid, beyond, bits, (uint)x, (uint)y, z);
         }
     }
 }
@@ -44,7 +46,10 @@ kernel void solid_mark(const vitrail_GridDesc grid, global uint* beyond, MARK_PA
     MARK_WITHOUT_CHANNELS;
     const Bits bits = MARK_BITS;
     MARK_EIGHTS(triangles, blocks, live, {
-        live &= samples_eight(&grid, positions, indices, vertexCount, triangles, true);
+        SamplesEight eight;
+        live &= samples_eight(&grid, positions, indices, vertexCount, triangles, true, live, &eight);
+        SAMPLES_EACH_FEW(eight, solid_toggle(&grid, beyond, &bits, x, y, z))
+        if (lanes_int_least(live) == 0) continue;
         for (int lane = 0; lane < LANES; ++lane)
             if (lanes_int_at(&live, lane))
                 solid_triangle(&grid, beyond, positions, indices, vertexCount, triangles[lane], blocks[lane], &bits, tasks, taskCapacity,

@@ -132,6 +132,23 @@ kernel void solid_winding_open(global const float* positions, global const uint*
 #define CROSSING_CLOSED 2u
 #define CROSSING_GROWS 1u
 
+// A crossing of column (x, y) at z; `sense`: samples_sense.
+INLINE void solid_winding_cross(const vitrail_GridDesc* grid, global uint* columns, global uint* crossings, bool mirrored, uint closed,
+                                uint x, uint y, real z, int sense) {
+    if (!(z < REAL(grid->size.z) - REAL(0.5f))) return;
+    const uint at = atomic_inc(columns + (size_t)y * grid->tilesX * 8u + x);
+    if (!crossings) return;
+    const uint cell = z < REAL(0.5f) ? 0u : (uint)(z + REAL(0.5f));
+    crossings[at] = cell * 4u | closed | ((sense < 0) != mirrored ? CROSSING_GROWS : 0u);
+}
+
+// What crossings of a triangle say of its part. parts, open: solid_winding_mark's.
+INLINE uint solid_winding_closed(global uint* parts, global const uint* open, uint triangle) {
+    if (!parts || !open) return parts || open ? CROSSING_CLOSED : 0u;
+    const uint root = winding_root(parts, triangle);
+    return (open[root / 32u] >> (root & 31u)) & 1u ? 0u : CROSSING_CLOSED;
+}
+
 static inline void solid_winding_triangle(const vitrail_GridDesc* grid, global uint* columns, global uint* crossings, bool mirrored,
                                           uint closed, global const float* positions, global const uint* indices, uint vertexCount,
                                           uint triangle, int block, global uint2* tasks, uint taskCapacity, global uint* status) {
@@ -142,22 +159,16 @@ static inline void solid_winding_triangle(const vitrail_GridDesc* grid, global u
     if (state != SAMPLES_COVERS) return;
     int xLeast = s.xLeast, xMost = s.xMost, yLeast = s.yLeast, yMost = s.yMost;
     if (tasks_columns(&xLeast, &xMost, &yLeast, &yMost, block, tasks, taskCapacity, status, triangle)) return;
-    const real last = REAL(grid->size.z) - REAL(0.5f);
     for (int y = yLeast; y <= yMost; ++y) {
         Seen q;
         int from, to;
         if (!samples_row(grid, &s, xLeast, xMost, y, &q, &from, &to) || from >= to) continue;
-        int sense = -samples_sense(grid, &s, &q, from);
+        int sense = samples_sense(grid, &s, &q, from);
         for (int x = from; x < to; ++x) {
             real z;
             if (!samples_depth(grid, &s, &q, x, &z)) continue;
-            if (!(z < last)) continue;
-            const size_t column = (size_t)y * grid->tilesX * 8u + (uint)x;
-            const uint at = atomic_inc(columns + column);
-            if (!crossings) continue;
-            if (s.behind) sense = -samples_sense(grid, &s, &q, x);
-            const uint cell = z < REAL(0.5f) ? 0u : (uint)(z + REAL(0.5f));
-            crossings[at] = cell * 4u | closed | ((sense > 0) != mirrored ? CROSSING_GROWS : 0u);
+            if (s.behind) sense = samples_sense(grid, &s, &q, x);
+            solid_winding_cross(grid, columns, crossings, mirrored, closed, (uint)x, (uint)y, z, sense);
         }
     }
 }
@@ -170,17 +181,15 @@ kernel void solid_winding_mark(const vitrail_GridDesc grid, global uint* columns
     (void)words;
     (void)bricks;
     MARK_EIGHTS(triangles, blocks, live, {
-        live &= samples_eight(&grid, positions, indices, vertexCount, triangles, true);
+        SamplesEight eight;
+        live &= samples_eight(&grid, positions, indices, vertexCount, triangles, true, live, &eight);
+        SAMPLES_EACH_FEW(eight, solid_winding_cross(&grid, columns, crossings, mirrored != 0u,
+                                                    solid_winding_closed(parts, open, triangles[lane]), x, y, z, sense))
+        if (lanes_int_least(live) == 0) continue;
         for (int lane = 0; lane < LANES; ++lane)
-            if (lanes_int_at(&live, lane)) {
-                uint closed = parts || open ? CROSSING_CLOSED : 0u;
-                if (parts && open) {
-                    const uint root = winding_root(parts, triangles[lane]);
-                    if ((open[root / 32u] >> (root & 31u)) & 1u) closed = 0u;
-                }
-                solid_winding_triangle(&grid, columns, crossings, mirrored != 0u, closed, positions, indices, vertexCount, triangles[lane],
-                                       blocks[lane], tasks, taskCapacity, status);
-            }
+            if (lanes_int_at(&live, lane))
+                solid_winding_triangle(&grid, columns, crossings, mirrored != 0u, solid_winding_closed(parts, open, triangles[lane]),
+                                       positions, indices, vertexCount, triangles[lane], blocks[lane], tasks, taskCapacity, status);
     })
 }
 

@@ -85,7 +85,25 @@ std::vector<Case> meanMeshes(Uint3 size) {
         addTriangle(outside, a + Float3(s.x, 0, 0), b + Float3(s.x, 0, 0), a + Float3(s.x, 1, 0));
         addTriangle(outside, a - s, b - s, a - s + Float3(0, 1, 0));
     }
+    // Of a cell or two: next to nothing wide; and with a corner on a column's centre and a cell face, low, where depths are rounded least, from which
+    // the triangle goes up or down.
+    Mesh needles, tips;
+    Random small(11);
+    for (int i = 0; i < 300; ++i) {
+        Float3 a = small.point(Float3(0), s), b = a + small.point(Float3(-2), Float3(2));
+        if (i % 3 != 0) {
+            a = glm::round(a * 2.0f) / 2.0f;
+            b = glm::round(b * 2.0f) / 2.0f;
+        }
+        addTriangle(needles, a, b, glm::mix(a, b, small.in(0, 1)) + small.point(Float3(-1e-6f), Float3(1e-6f)));
+        const Float3 tip(std::floor(a.x) + 0.5f, std::floor(a.y) + 0.5f, float(i % 2)), side(1, 1, i % 4 < 2 ? 1 : -1);
+        const auto beyond = [&] { return tip + side * small.point(Float3(-1, -1, 0), Float3(1)); };
+        const Float3 c = beyond(), d = beyond();
+        addTriangle(tips, c, i % 3 == 0 ? tip : d, i % 3 == 0 ? d : tip);
+    }
     cases.push_back({"slivers", slivers});
+    cases.push_back({"needles", needles});
+    cases.push_back({"tips", tips});
     cases.push_back({"edge-on", edgeOn});
     cases.push_back({"level", level});
     cases.push_back({"zero area", flat});
