@@ -42,6 +42,34 @@ def print_limits(points, grids, methods):
               ("mesh", "resolution", "limit ms", *methods), rows)
 
 
+def print_meshes(points, ours):
+    """A line a mesh, as bench/README.md has it: those with all resolutions of the run."""
+    by_key = {(p.mesh, p.resolution, p.method): p for p in points if not p.option}
+    resolutions = sorted({p.resolution for p in points if p.method == ours})
+    meshes = [m for m in dict.fromkeys(p.mesh for p in points) if all((m, r, ours) in by_key for r in resolutions)]
+    if not meshes:
+        return
+
+    def ratios(mesh, method):
+        pairs = [(by_key.get((mesh, r, method)), by_key[mesh, r, ours]) for r in resolutions]
+        return [p.kernel_ms / mine.kernel_ms for p, mine in pairs if p]
+
+    def mean(values):
+        return f"{math.exp(sum(map(math.log, values)) / len(values)):.2f}" if values else "-"
+
+    def listed(values, digits):
+        return " / ".join(f"{v:.{digits}g}" if v < 10**digits - 0.5 else f"{v:.0f}" for v in values) or "-"
+
+    print(f"\nA mesh at {', '.join(map(str, resolutions))} voxels; the lines over `{ours}` in geometric mean, methods over it at each\n")
+    print(f"| mesh, triangles | `{ours}`, kernel ms | separating axes | edge runs | `points` / `{ours}` | `sampled` / `{ours}` | limit ratio at {resolutions[-1]} |")
+    print("|---|---|---|---|---|---|---|")
+    for mesh in meshes:
+        last = by_key[mesh, resolutions[-1], ours]
+        print(f"| {mesh}, {last.triangles:,} | {listed([by_key[mesh, r, ours].kernel_ms for r in resolutions], 3)} |"
+              f" {mean(ratios(mesh, LINES[0]))} | {mean(ratios(mesh, LINES[1]))} | {listed(ratios(mesh, 'points'), 2)} |"
+              f" {listed(ratios(mesh, 'sampled'), 2)} | {f'{last.kernel_ms / last.limit_ms:.1f}' if last.limit_ms > 0 else '-'} |")
+
+
 def print_peers(points, grids, ours):
     peers = {p.method: p.rule for p in points if p.peer}
     by_key = {(p.mesh, p.resolution, p.method): p for p in points if not p.option}
@@ -120,6 +148,7 @@ def main():
         rows.append(("geometric mean", "", "", "", "", "", "",
                      *(f"{math.exp(sum(map(math.log, r)) / len(r)):.2f}" for r in ratios.values()), ""))
         table("the native lines", head, rows)
+        print_meshes(points, options.method)
     print_peers(points, grids, options.method)
     methods = list(dict.fromkeys(p.method for p in points))
     print_limits(points, grids, methods)

@@ -345,7 +345,7 @@ INLINE void samples_rows(const vitrail_GridDesc* grid, const Samples* s, int xLe
     }
 }
 
-#define SAMPLES_FEW 4  // columns along x and y of a triangle that is done beside seven others, a lane each
+#define SAMPLES_FEW 16  // columns along x and y of a triangle that is done beside seven others, a lane each
 
 // Eight triangles of a grid without perspective.
 typedef struct {
